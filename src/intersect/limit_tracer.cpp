@@ -36,6 +36,7 @@ constexpr double kRoomAround = 0.01;
 struct Candidate {
     double t_near = 0, t_far = 0;  // it meets none before and none after these
     bool is_crossed = false;       // it goes through the facet itself
+    bool is_met = false;           // it surely meets the patch, after t_near and before t_far
     Id patch = kNone;
     Vec3 weights{0};                              // of the facet's point nearest to the ray
     int nearest_corner = 0, farthest_corner = 0;  // along the ray
@@ -48,8 +49,9 @@ struct Candidates {
 };
 
 /// Which candidates are looked for: all, or those that may come before the first facet that the ray goes
-/// straight through, behind which it seldom goes on without a hit.
-enum class Reach { kToFirst, kAll };
+/// straight through, behind which it seldom goes on without a hit; or all before some t, or only one that is
+/// surely met before it.
+enum class Reach { kToFirst, kAll, kAnyBefore };
 
 /// By the bounds of the faces' parts; without bounds all of space.
 Box box_of_closed_form(const Surface& surface) {
@@ -151,7 +153,7 @@ struct LimitTracer::Data {
     struct Query {
         const Ray& ray;
         const RayFrame& frame;
-        double t_min = 0;
+        double t_min = 0, t_max = kUnbounded;
     };
     Candidates candidates(const Query& query, Reach reach) const;
     template <typename Use>
@@ -178,6 +180,7 @@ std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, con
     return Candidate{(z[low] - patch.stray) / frame.speed,
                      t_far,
                      nearest.distance == 0,
+                     nearest.distance == 0 && surely_covers_origin(seen, patch.stray),
                      kNone,
                      nearest.weights,
                      low,
@@ -188,18 +191,25 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
     Candidates candidates;
     std::vector<Candidate>& found = candidates.found;
     double& complete_to = candidates.complete_to;
+    complete_to = query.t_max;
     // A ray comes into the box of a patch no later than so much after its t_near. The box of a part holds the
     // surface itself: where the ray has not come into it the part has no hit.
     const double beyond = by_part ? 0 : largest_patch / query.frame.speed;
     const auto look_at = [&](const RayPatch& patch, Id number) {
         const auto one = candidate(query.frame, patch, query.t_min);
         if (!one || one->t_near > complete_to) return;
+        if (reach == Reach::kAnyBefore && one->is_met && one->t_near > query.t_min &&
+            one->t_far < query.t_max) {
+            found.assign(1, *one);
+            complete_to = -kUnbounded;
+            return;
+        }
         found.push_back(*one);
         found.back().patch = number;
         if (reach == Reach::kToFirst && one->is_crossed && one->t_near > query.t_min)
             complete_to = std::min(complete_to, one->t_far);
     };
-    tree.visit(query.ray, query.t_min, kUnbounded, [&](Id box) {
+    tree.visit(query.ray, query.t_min, query.t_max + beyond, [&](Id box) {
         if (!by_part) {
             look_at(patches[box], box);
         } else {
@@ -211,6 +221,7 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
         }
         return complete_to + beyond;
     });
+    if (complete_to == -kUnbounded) return candidates;
     std::erase_if(found, [&](const Candidate& one) { return !(one.t_near <= complete_to); });
     // The order of Embree's visits depends on the machine; this order does not.
     std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
@@ -283,8 +294,17 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
 
 bool LimitTracer::meets(const Ray& ray, double t_min, double t_max) const {
     if (data_->surface.has_closed_form()) return data_->surface.meets(ray, t_min, t_max);
-    const std::optional<SurfaceHit> hit = first_hit(ray, t_min);
-    return hit && hit->t < t_max;
+    const std::optional<RayFrame> frame = make_ray_frame(ray);
+    if (!frame) return false;
+    const Candidates candidates = data_->candidates({ray, *frame, t_min, t_max}, Reach::kAnyBefore);
+    if (candidates.complete_to == -kUnbounded) return true;
+    bool met = false;
+    for (const Candidate& candidate : candidates.found) {
+        data_->for_each_hit(ray, *frame, candidate,
+                            [&](const SurfaceHit& hit) { met = met || (hit.t > t_min && hit.t < t_max); });
+        if (met) break;
+    }
+    return met;
 }
 
 Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits asked) const {

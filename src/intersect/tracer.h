@@ -2,6 +2,7 @@
 // triangle in the plane comes to the origin.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -68,6 +69,20 @@ inline bool is_surely_beyond(const PlaneTriangle& p, double distance) {
         if (outside > kRelative * distance * edge + kRounding * (dot(a, a) + dot(b, b))) return true;
     }
     return false;
+}
+
+/// Whether a surface over the triangle, seen along the ray through the origin, surely hides the origin, where
+/// its border strays no farther from the triangle's edges than `stray`: farther inside, the border goes
+/// around the origin once, and a disc covers what its border goes around.
+inline bool surely_covers_origin(const PlaneTriangle& p, double stray) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 &a = p[k], &b = p[(k + 1) % 3];
+        const double height = area_from_origin(a, b) / length(b - a);
+        least = std::min(least, height);
+        most = std::max(most, height);
+    }
+    return least > stray || most < -stray;
 }
 
 /// The triangle's point that is nearest to the origin: weights of its corners, and how far it is; 0 where the

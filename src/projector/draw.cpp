@@ -1,8 +1,10 @@
 // The exact engine: the vector engine over tiles of samples, and the scalar one where it finds no bounds.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <memory>
+#include <mutex>
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
@@ -65,6 +67,13 @@ std::size_t samples_in(const SampleTiles& tiles, std::uint32_t first, std::uint3
     return samples;
 }
 
+/// Pixels of these vectors: nothing is sure.
+void leave_open(const KernelScene& scene, std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t v = first; v < first + count; ++v)
+        for (std::size_t k = 0; k < kLanes; ++k)
+            scene.visible[scene.tiles->samples[v].sample[k]].triangle = kSeveral;
+}
+
 DrawCounts draw_one_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options) {
     KernelState& state = own_state();
     state.seen.ambiguous_samples = 0;
@@ -75,6 +84,10 @@ DrawCounts draw_one_batch(const KernelScene& scene, std::size_t batch, const Ker
     for (std::uint32_t j = 0; j < kLanes; ++j) {
         if (!(left >> j & 1)) continue;
         const SampleTile& tile = scene.tiles->tiles[first_tile + j];
+        if (scene.pixels) {
+            leave_open(scene, tile.first_vector, tile.vectors);
+            continue;
+        }
         for (std::uint32_t v = tile.first_vector; v < tile.first_vector + tile.vectors; ++v)
             draw_vector_scalar(scene, v, [&](std::size_t) { return tile.rays; });
         counts.unbounded += samples_in(*scene.tiles, tile.first_vector, tile.vectors);
@@ -131,6 +144,42 @@ void draw_vectors(const KernelScene& asked, const FacetSamples& owned, const Dra
     });
 }
 
+/// The pixels that are asked for, whose facets `owned` tells: as draw_vectors().
+void draw_pixels(const KernelScene& asked, const FacetSamples& owned) {
+    constexpr int kPixelsAcrossTile = 16;
+    SampleGrid pixels = *asked.grid;
+    pixels.side = 1;
+    TileParams params = tile_params(asked.data->size());
+    params.tile_side = kPixelsAcrossTile;
+    params.mixed_below = 0;
+    const TilePlan plan = plan_tiles(*asked.mesh, owned, pixels, params);
+    std::mutex mutex;
+    parallel_for(plan.batches.size(), 1, [&](std::size_t first, std::size_t last) {
+        TileMaker maker(pixels, asked.grid->side);
+        SampleTiles& tiles = own_tiles();
+        std::vector<PixelTriangle> open;
+        KernelScene kernel = asked;
+        kernel.tiles = &tiles;
+        if (asked.open) kernel.open = &open;
+        for (std::size_t b = first; b < last; ++b) {
+            clear(tiles);
+            maker.add_batch(plan, b, tiles);
+            draw_one_batch(kernel, 0, {});
+        }
+        if (open.empty()) return;
+        const std::lock_guard lock(mutex);
+        asked.open->insert(asked.open->end(), open.begin(), open.end());
+    });
+    if (!asked.open) return;
+    std::sort(asked.open->begin(), asked.open->end(), [](const PixelTriangle& a, const PixelTriangle& b) {
+        return a.pixel != b.pixel ? a.pixel < b.pixel : a.triangle < b.triangle;
+    });
+    const auto same = [](const PixelTriangle& a, const PixelTriangle& b) {
+        return a.pixel == b.pixel && a.triangle == b.triangle;
+    };
+    asked.open->erase(std::unique(asked.open->begin(), asked.open->end(), same), asked.open->end());
+}
+
 }  // namespace
 
 DrawCounts draw_tiles(const KernelScene& scene, const KernelOptions& options) {
@@ -179,6 +228,19 @@ void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSa
 void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                   const SampleGrid& grid, std::span<Visible> visible) {
     find_visible(scene, mesh, owned, grid, visible, DrawOptions{});
+}
+
+void find_visible_by_pixel(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                           const SampleGrid& grid, std::span<Visible> visible,
+                           std::vector<PixelTriangle>* open) {
+    TRILENS_CHECK(visible.size() == grid.pixels(), "one entry per pixel of the grid");
+    TRILENS_CHECK(grid.side > 1 && grid.chosen.empty(), "a pixel has several samples, all of them");
+    check_samples(mesh, owned);
+    KernelScene asked = kernel_scene(scene, mesh, grid);
+    asked.visible = visible;
+    asked.pixels = true;
+    asked.open = open;
+    draw_pixels(asked, owned);
 }
 
 }  // namespace trilens

@@ -27,6 +27,16 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
 void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                   const SampleGrid& grid, std::span<Visible> visible);
 
+/// For every pixel of the grid's window that `owned` gives to a facet, by its number in rows: what
+/// find_visible() would find for each of its samples by that facet's rays, where that is surely one triangle,
+/// or nothing, with bounds of t that hold for all of them; else `triangle` is kSeveral. visible.size() ==
+/// grid.pixels(); other entries are left alone. Takes about as long as for one sample a pixel. `open`: if
+/// asked for, gets all triangles that the samples of pixels with kSeveral may see, by pixel; of some pixels
+/// none are known.
+void find_visible_by_pixel(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                           const SampleGrid& grid, std::span<Visible> visible,
+                           std::vector<PixelTriangle>* open = nullptr);
+
 // Switches of the exact engine that tests and benchmarks turn; none changes a bit of what it draws.
 
 struct DrawOptions {

@@ -1,6 +1,7 @@
 // The vector engine beside the plain one, in every leaf mode, in tiles and in vectors of mixed facets.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "base/raymesh/rasterize.h"
@@ -66,6 +67,26 @@ inline RayMesh bowed_mesh(const SampleGrid& grid, const Frame& frame, int cells)
     return film_mesh(grid, cells, [&](double x, double y) {
         return Ray{frame(Vec3(x, y, 0.3 * (x * x + y * y))), frame.scale * Vec3(0.6 * x, 0.6 * y, 1)};
     });
+}
+
+/// A closed bumpy room around the frame's origin.
+inline TriangleScene bumpy_room(const Frame& frame, int cells) {
+    TriangleScene scene;
+    const auto point = [&](int wall, int i, int j) {
+        const double x = 2.0 * i / cells - 1, y = 2.0 * j / cells - 1, s = wall % 2 == 0 ? 1 : -1;
+        const Vec3 p = wall < 2 ? Vec3(s, x, y) : wall < 4 ? Vec3(x, s, y) : Vec3(x, y, s);
+        return frame(8.0 * p *
+                     (1 + 0.05 * std::sin(9 * p.x) * std::sin(7 * p.y + 1) * std::sin(8 * p.z + 2)));
+    };
+    for (int wall = 0; wall < 6; ++wall) {
+        for (int j = 0; j < cells; ++j) {
+            for (int i = 0; i < cells; ++i) {
+                add_triangle(scene, point(wall, i, j), point(wall, i + 1, j), point(wall, i + 1, j + 1));
+                add_triangle(scene, point(wall, i, j), point(wall, i + 1, j + 1), point(wall, i, j + 1));
+            }
+        }
+    }
+    return scene;
 }
 
 }  // namespace trilens_test

@@ -15,26 +15,6 @@ using namespace trilens_test;
 
 namespace {
 
-/// A closed bumpy room around the frame's origin.
-TriangleScene bumpy_room(const Frame& frame, int cells) {
-    TriangleScene scene;
-    const auto point = [&](int wall, int i, int j) {
-        const double x = 2.0 * i / cells - 1, y = 2.0 * j / cells - 1, s = wall % 2 == 0 ? 1 : -1;
-        const Vec3 p = wall < 2 ? Vec3(s, x, y) : wall < 4 ? Vec3(x, s, y) : Vec3(x, y, s);
-        return frame(8.0 * p *
-                     (1 + 0.05 * std::sin(9 * p.x) * std::sin(7 * p.y + 1) * std::sin(8 * p.z + 2)));
-    };
-    for (int wall = 0; wall < 6; ++wall) {
-        for (int j = 0; j < cells; ++j) {
-            for (int i = 0; i < cells; ++i) {
-                add_triangle(scene, point(wall, i, j), point(wall, i + 1, j), point(wall, i + 1, j + 1));
-                add_triangle(scene, point(wall, i, j), point(wall, i + 1, j + 1), point(wall, i, j + 1));
-            }
-        }
-    }
-    return scene;
-}
-
 /// Large sheets over the film around the frame's origin, a hair before one another, crossing, and behind the
 /// rays, with specks between them.
 TriangleScene sheets(Random& random, const Frame& frame, int count) {

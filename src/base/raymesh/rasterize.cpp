@@ -164,6 +164,39 @@ FacetSamples rasterize_facets(const RayMesh& mesh, const SampleGrid& grid) {
     return group_by_facet(owner, mesh.facets.size());
 }
 
+FacetSamples pixels_in_facets(const RayMesh& mesh, const SampleGrid& grid) {
+    std::vector<Id> owner(grid.pixels(), kNone);
+    const std::vector<ScreenFacet> facets = facets_on_screen(mesh, grid);
+    const std::size_t side = static_cast<std::size_t>(grid.side),
+                      width = static_cast<std::size_t>(grid.width());
+    // What is covered of a row, but where nothing is sure.
+    const auto covered = [&](const ScreenFacet& facet, std::size_t row) {
+        RowSpan span = facet.edges.cover(row, facet.window.x0, facet.window.x1);
+        const auto covers_at = [&](std::size_t column) {
+            return covers(facet, grid.position(grid.sample_at(column, row)));
+        };
+        if (span.sure_begin == span.sure_end) return span;
+        while (span.sure_begin > span.begin && covers_at(span.sure_begin - 1)) --span.sure_begin;
+        while (span.sure_end < span.end && covers_at(span.sure_end)) ++span.sure_end;
+        return span;
+    };
+    // Facets are convex: a pixel lies inside where its first and its last row of samples do.
+    const auto fill_row = [&](const ScreenFacet& facet, std::size_t y) {
+        const RowSpan first = covered(facet, y * side), last = covered(facet, y * side + side - 1);
+        const std::size_t begin = std::max(first.sure_begin, last.sure_begin),
+                          end = std::min(first.sure_end, last.sure_end);
+        for (std::size_t x = (begin + side - 1) / side; x < end / side; ++x)
+            if (owner[y * width + x] == kNone) owner[y * width + x] = facet.facet;
+    };
+    parallel_for(static_cast<std::size_t>(grid.height()), 4, [&](std::size_t from, std::size_t to) {
+        for (const ScreenFacet& facet : facets)
+            for (std::size_t y = std::max(from, facet.window.y0 / side);
+                 y < std::min(to, (facet.window.y1 + side - 1) / side); ++y)
+                fill_row(facet, y);
+    });
+    return group_by_facet(owner, mesh.facets.size());
+}
+
 namespace {
 
 /// Where a x + d > least, in columns of samples, one column given away for the rounding of the quotient.

@@ -16,6 +16,11 @@ namespace trilens {
 /// index wins. Facets without rays or without area on the screen own nothing.
 FacetSamples rasterize_facets(const RayMesh& mesh, const SampleGrid& grid);
 
+/// The pixels of the grid's window, numbered in rows, all of whose samples rasterize_facets() gives to one
+/// facet, by that facet; but for some at edges that rounding leaves open. `grid`: in any order, with all its
+/// samples.
+FacetSamples pixels_in_facets(const RayMesh& mesh, const SampleGrid& grid);
+
 // The part of a row of samples that a facet covers: decided at its ends, not sample by sample.
 
 /// Columns of samples, counted from the window's left: those in [sure_begin, sure_end) are covered beyond any

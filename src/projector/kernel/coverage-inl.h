@@ -22,14 +22,16 @@ HWY_INLINE void clear_nearest(Nearest& nearest) {
     store_words(set_word(kNone), nearest.triangle);
 }
 
-/// At the vector's samples.
-HWY_INLINE void put_whole(const WholeTile& whole, const SampleVector& samples, Nearest& nearest) {
+/// At the vector's samples, which are the tile's.
+HWY_INLINE void put_whole(const WholeTile& whole, const SampleTile& tile, const SampleVector& samples,
+                          Nearest& nearest) {
     const Floats u = load(samples.u), v = load(samples.v);
     const auto linear = [&](const float(&c)[3]) HWY_ATTR {
         return multiply_add(u, set(c[1]), multiply_add(v, set(c[2]), set(c[0])));
     };
     const Floats inverse = reciprocal(linear(whole.along)), t = linear(whole.above) * inverse;
-    const Floats off = error_of_time(t, inverse, set(whole.above_error), set(whole.along_error));
+    const Floats off = error_of_time(t, inverse, set(whole.above_error + 2 * swing_of(whole.above, tile)),
+                                     set(whole.along_error + 2 * swing_of(whole.along, tile)));
     store(t - off, nearest.low);
     store(t + off, nearest.high);
     store_words(set_word(whole.triangle), nearest.triangle);
@@ -39,9 +41,10 @@ HWY_NOINLINE void set_nearest(const KernelScene& scene, std::size_t j, KernelSta
     state.seen.untouched &= ~(1u << j);
     const bool covered = state.seen.covered >> j & 1;
     const std::size_t k = j - state.group.first_lane;
+    const SampleTile& tile = scene.tiles->tiles[state.group.first_tile + j];
     for (std::uint32_t i = state.group.tile_vectors[k]; i < state.group.tile_vectors[k + 1]; ++i) {
         if (covered)
-            put_whole(state.seen.whole[j], scene.tiles->vectors[state.group.first_vector + i],
+            put_whole(state.seen.whole[j], tile, scene.tiles->vectors[state.group.first_vector + i],
                       state.seen.nearest[i]);
         else
             clear_nearest(state.seen.nearest[i]);

@@ -79,6 +79,27 @@ HWY_INLINE std::uint32_t keep_nearest(Nearest& nearest, std::uint32_t triangle, 
     return kAllLanes & ~known;
 }
 
+/// Of lanes that are pixels: where triangles may be seen or not they stay in doubt, beyond what is nearer.
+HWY_INLINE void keep_doubts(Doubts& doubts, const Meeting& m, std::uint32_t lanes) {
+    const Floats low = choose(m.placed, m.t - m.off, set(-kNever)), old = load(doubts.low);
+    store(choose(mask_of(lanes), least(low, old), old), doubts.low);
+}
+
+/// How far a linear function, a conic turn over a pixel of the tile, about its middle: nothing where lanes
+/// are samples.
+HWY_INLINE float swing_of(const float (&c)[3], const SampleTile& tile) {
+    return std::fabs(c[1]) * tile.reach_u + std::fabs(c[2]) * tile.reach_v;
+}
+HWY_INLINE float linear_swing(const float (&c)[3][kLanes], std::size_t lane, const SampleTile& tile) {
+    return std::fabs(c[1][lane]) * tile.reach_u + std::fabs(c[2][lane]) * tile.reach_v;
+}
+HWY_INLINE float conic_swing(const float (&c)[6][kLanes], std::size_t lane, const SampleTile& tile) {
+    const float uu = std::fabs(c[3][lane]), uv = std::fabs(c[4][lane]), vv = std::fabs(c[5][lane]);
+    return tile.reach_u * (std::fabs(c[1][lane]) + 2 * uu + uv + uu * tile.reach_u) +
+           tile.reach_v * (std::fabs(c[2][lane]) + 2 * vv + uv + vv * tile.reach_v) +
+           uv * tile.reach_u * tile.reach_v;
+}
+
 /// The same, and lists those of them that are `valid`.
 HWY_INLINE void offer_lanes(KernelState& state, std::uint32_t vector, std::uint32_t triangle,
                             const Meeting& m, std::uint32_t valid) {

@@ -57,6 +57,11 @@ HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, Ker
     state.seen.all_farthest = kNever;
     store(set(kNever), state.seen.farthest);
     state.seen.ambiguous.clear();
+    if (scene.pixels) {
+        Doubts none;
+        store(set(kNever), none.low);
+        state.seen.doubts.assign(state.group.vectors, none);
+    }
     state.work.beams_made = false;
     state.seen.most_ambiguous = 4096 + 64 * samples;
     if (state.seen.nearest.size() < state.group.vectors) state.seen.nearest.resize(state.group.vectors);
@@ -133,7 +138,9 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
             left |= lanes;
             continue;
         }
-        if (wants_visible(scene))
+        if (scene.pixels)
+            write_pixels_group(scene, state);
+        else if (wants_visible(scene))
             write_visible_group(scene, state);
         else
             resolve_group(scene, state);

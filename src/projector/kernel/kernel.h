@@ -37,6 +37,14 @@ inline Visible visible_of(const Hit& hit) {
             static_cast<double>(near) >= hit.t ? near : std::nextafter(near, INFINITY)};
 }
 
+/// Visible::triangle of a pixel whose samples may see several.
+inline constexpr Id kSeveral = kNone - 1;
+
+/// A triangle (index into the scene) that samples of a pixel may see.
+struct PixelTriangle {
+    Id pixel = kNone, triangle = kNone;
+};
+
 struct KernelScene {
     const PreparedScene::Data* data = nullptr;
     const LeafTree* tree = nullptr;
@@ -47,6 +55,10 @@ struct KernelScene {
     std::span<Hit> hits{};                      // by sample
     std::span<Visible> visible{};               // by sample
     std::span<VectorVisible> vector_visible{};  // by vector
+    // The tiles' lanes are pixels, and `visible` is by pixel: what all its samples surely see, or kSeveral.
+    bool pixels = false;
+    std::vector<PixelTriangle>* open =
+        nullptr;  // gets all that pixels with kSeveral may see; null: not asked for
 };
 
 /// Whether what is visible is asked for, not hits.

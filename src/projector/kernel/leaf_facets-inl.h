@@ -158,7 +158,9 @@ HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, cons
             }
             near &= ~bits(outside);
         }
-        for (Each vector(near); vector; ++vector)
+        for (Each vector(drawing.scene.pixels ? near : 0); vector; ++vector)
+            meet_pixels(drawing, forms, lane, triangle, g * static_cast<std::uint32_t>(kLanes) + *vector);
+        for (Each vector(drawing.scene.pixels ? 0 : near); vector; ++vector)
             meet_vector(drawing, vectors, forms, lane, triangle,
                         g * static_cast<std::uint32_t>(kLanes) + *vector);
     }

@@ -63,6 +63,40 @@ HWY_INLINE void meet_vector(const TileDrawing& drawing, const TileVectors& tile,
         list_ambiguous(drawing.state, drawing.first_vector + vector, ambiguous, triangle);
 }
 
+/// The same where lanes are pixels: what is sure is so for all samples of a pixel.
+HWY_INLINE void meet_pixels(const TileDrawing& drawing, const Forms& forms, std::size_t lane, Id triangle,
+                            std::uint32_t vector) {
+    const SampleTile& tile = drawing.tile;
+    const SampleVector& samples = drawing.scene.tiles->vectors[tile.first_vector + vector];
+    const Floats u = load(samples.u), v = load(samples.v);
+    Floats inside = set(kNever), outside = inside;
+    for (const auto& c : forms.edge) {
+        const Floats conic = multiply_add(
+            u, multiply_add(u, set(c[3][lane]), multiply_add(v, set(c[4][lane]), set(c[1][lane]))),
+            multiply_add(v, multiply_add(v, set(c[5][lane]), set(c[2][lane])), set(c[0][lane])));
+        const Floats swing = set(conic_swing(c, lane, tile));
+        inside = least(inside, conic - swing);
+        outside = least(outside, conic + swing);
+    }
+    const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
+        return multiply_add(u, set(c[1][lane]), multiply_add(v, set(c[2][lane]), set(c[0][lane])));
+    };
+    // As errors of depth are: twice what it is off by.
+    const float above_error = drawing.errors.above + 2 * linear_swing(forms.above, lane, tile),
+                along_error = drawing.errors.along + 2 * linear_swing(forms.along, lane, tile);
+    const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
+    const Meeting meeting{outside<set(-drawing.errors.edge), inside> set(drawing.errors.edge),
+                          along > set(along_error), t,
+                          error_of_time(t, inverse, set(above_error), set(along_error))};
+    const std::uint32_t in_group = drawing.first_vector + vector;
+    const std::uint32_t doubtful = keep_nearest(drawing.state.seen.nearest[in_group], triangle, meeting);
+    if (doubtful == 0) return;
+    keep_doubts(drawing.state.seen.doubts[in_group], meeting, doubtful);
+    if (drawing.scene.open)
+        list_ambiguous(drawing.state, in_group,
+                       doubtful & drawing.scene.tiles->valid[tile.first_vector + vector], triangle);
+}
+
 /// Of the tile of lane j. None: the group has no tiles.
 HWY_INLINE VectorLimits* limits_of(const KernelScene& scene, std::size_t j, KernelState& state) {
     if (state.seen.limits.empty()) return nullptr;
@@ -146,7 +180,8 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
     if (!lanes) return;
     const Floats one = set(1.0f);
     const Floats area = (cells.x_high - cells.x_low + one) * (cells.y_high - cells.y_low + one);
-    const std::uint32_t small = lanes & bits(area <= set(kFewCells));
+    const bool pixels = drawing.scene.pixels;
+    const std::uint32_t small = pixels ? 0 : lanes & bits(area <= set(kFewCells));
     if (small) walk_cells(drawing, forms, cells, small);
     if (!(lanes & ~small)) return;
     std::vector<std::uint32_t>& list = drawing.state.work.pairs;
@@ -156,7 +191,10 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
                                          lanes & ~small, list.data());
     const TileVectors tile = vectors_of(drawing);
     const std::uint32_t* const pair = list.data();
-    for (std::size_t p = 0; p < pairs; ++p)
+    for (std::size_t p = 0; pixels && p < pairs; ++p)
+        meet_pixels(drawing, forms, pair[p] % kLanes, drawing.leaf.triangle[pair[p] % kLanes],
+                    pair[p] / static_cast<std::uint32_t>(kLanes));
+    for (std::size_t p = 0; !pixels && p < pairs; ++p)
         meet_vector(drawing, tile, forms, pair[p] % kLanes, drawing.leaf.triangle[pair[p] % kLanes],
                     pair[p] / static_cast<std::uint32_t>(kLanes));
 }

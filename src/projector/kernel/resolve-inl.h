@@ -278,7 +278,7 @@ HWY_INLINE void write_visible_tile(const KernelScene& scene, std::size_t j, Kern
     for (std::uint32_t i = first; i < first + tile.vectors; ++i) {
         if (is_ambiguous(state, next, i)) touch_tile(scene, j, state);
         if (state.seen.covered >> j & 1) {
-            put_whole(state.seen.whole[j], scene.tiles->vectors[state.group.first_vector + i], whole);
+            put_whole(state.seen.whole[j], tile, scene.tiles->vectors[state.group.first_vector + i], whole);
             write_visible(scene, state, i, whole, facet_of, next);
         } else {
             if (i + kPlacedAhead < state.group.vectors)
@@ -296,6 +296,43 @@ HWY_NOINLINE void write_visible_group(const KernelScene& scene, KernelState& sta
         set_nearest(scene, *lane, state);
     for (std::uint32_t j = state.group.first_lane; j < state.group.first_lane + state.group.tiles; ++j)
         write_visible_tile(scene, j, state, next);
+}
+
+/// All that pixels with kSeveral may see. `doubtful`: those, by vector of the group.
+HWY_NOINLINE void list_open(const KernelScene& scene, const KernelState& state,
+                            std::span<const std::uint32_t> doubtful) {
+    if (state.seen.ambiguous.size() > state.seen.most_ambiguous) return;  // not all are listed
+    const VectorSamples* const samples = &scene.tiles->samples[state.group.first_vector];
+    const auto list = [&](std::uint32_t vector, std::uint32_t lane, Id triangle) {
+        scene.open->push_back({samples[vector].sample[lane], scene.data->named[triangle + 1]});
+    };
+    for (std::uint32_t v = 0; v < state.group.vectors; ++v)
+        for (Each lane(doubtful[v]); lane; ++lane) {
+            const Id sure = state.seen.nearest[v].triangle[*lane];
+            if (sure != kNone) list(v, *lane, sure);
+        }
+    for (const AmbiguousHit& one : state.seen.ambiguous)
+        if (doubtful[one.vector] >> one.lane & 1) list(one.vector, one.lane, one.triangle);
+}
+
+/// What all of the group's pixels see: where nothing is in doubt that may be nearer.
+HWY_NOINLINE void write_pixels_group(const KernelScene& scene, KernelState& state) {
+    for (Each lane(state.seen.untouched); lane; ++lane) set_nearest(scene, *lane, state);
+    std::vector<std::uint32_t>& doubts = state.work.pairs;
+    doubts.resize(std::max<std::size_t>(doubts.size(), state.group.vectors));
+    for (std::uint32_t i = 0; i < state.group.vectors; ++i) {
+        const Nearest& nearest = state.seen.nearest[i];
+        const Floats high = load(nearest.high), doubt = load(state.seen.doubts[i].low);
+        const Mask doubtful = without(doubt < set(kNever), high < doubt);
+        VectorVisible seen;
+        store_words(choose(doubtful, set_word(kSeveral), scene_triangles(*scene.data, nearest)),
+                    seen.triangle);
+        store(load(nearest.low), seen.t_low);
+        store(high, seen.t_high);
+        write_samples(scene, state.group.first_vector + i, seen);
+        doubts[i] = bits(doubtful) & scene.tiles->valid[state.group.first_vector + i];
+    }
+    if (scene.open) list_open(scene, state, std::span(doubts).first(state.group.vectors));
 }
 
 /// What all samples of the mixed group's vectors that `state` names see.

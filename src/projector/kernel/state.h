@@ -96,6 +96,11 @@ struct WholeTile {
     float farthest;
 };
 
+/// Where lanes are pixels: no triangle that some of a lane's samples may see, and others may not, is nearer.
+struct alignas(64) Doubts {
+    float low[kLanes];
+};
+
 /// A triangle that may be what a sample sees, or may not.
 struct AmbiguousHit {
     std::uint32_t vector, lane, triangle;
@@ -174,6 +179,7 @@ struct GroupSeen {
     std::uint32_t untouched = 0;   // bit j: `nearest` of the vectors of the tile of lane j is not set
     std::uint32_t covered = 0;     // of those: bit j: whole[j] is seen, else nothing
     std::vector<Nearest> nearest;  // by vector of the group
+    std::vector<Doubts> doubts;    // likewise, where lanes are pixels
     std::vector<AmbiguousHit> ambiguous;
     std::size_t most_ambiguous = 0;     // beyond that the group is left to the scalar engine
     std::size_t ambiguous_samples = 0;  // of all groups so far

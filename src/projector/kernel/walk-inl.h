@@ -100,7 +100,9 @@ inline constexpr float kRaysBelow = 4, kRaysBelowAtTiles = 32;
 
 /// By what mode tiles and triangles that may meet are drawn fastest (measured).
 HWY_INLINE LeafMode cheapest_mode(const KernelState& state, const Leaf& leaf, float nearest, int tiles,
-                                  int triangles) {
+                                  int triangles, bool pixels) {
+    if (pixels)
+        return tiles > 1 && triangles + 0.7f < 2.0f * tiles ? LeafMode::kFacets : LeafMode::kTriangles;
     const float rays_below = state.group.tiles > 1 ? kRaysBelowAtTiles : kRaysBelow;
     if (samples_per_triangle(state.beam.pitch, leaf, nearest) < rays_below) return LeafMode::kRays;
     return tiles > 1 && triangles + 0.7f < 2.0f * tiles ? LeafMode::kFacets : LeafMode::kTriangles;
@@ -117,7 +119,8 @@ HWY_NOINLINE void draw_leaf(const KernelScene& scene, const Leaf& leaf, float ne
     if (!triangles) return;
     make_edges(leaf, state.work.edges);
     if (mode == LeafMode::kCheapest)
-        mode = cheapest_mode(state, leaf, nearest, std::popcount(tiles), std::popcount(triangles));
+        mode =
+            cheapest_mode(state, leaf, nearest, std::popcount(tiles), std::popcount(triangles), scene.pixels);
     if (mode == LeafMode::kRays) return draw_ray_lanes(scene, leaf, middle, nearest, state);
     if (mode == LeafMode::kFacets) return draw_facet_lanes(scene, leaf, triangles, tiles, state);
     for (Each lane(tiles); lane; ++lane) draw_triangle_lanes(scene, leaf, *lane, state);
@@ -179,7 +182,8 @@ HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state)
         const std::uint32_t first = state.group.tile_vectors[k];
         for (std::uint32_t i = state.group.tile_vectors[k]; i < state.group.tile_vectors[k + 1]; ++i) {
             const Mask valid = mask_of(scene.tiles->valid[state.group.first_vector + i]);
-            const Floats own = choose(valid, load(state.seen.nearest[i].high), set(-kNever));
+            Floats own = choose(valid, load(state.seen.nearest[i].high), set(-kNever));
+            if (scene.pixels && !scene.open) own = least(own, load(state.seen.doubts[i].low));
             high = largest(high, own);
             const float farthest = largest_lane(own);
             if (limits) limits[(i - first) / kLanes].farthest[(i - first) % kLanes] = farthest;

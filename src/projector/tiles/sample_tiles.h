@@ -92,6 +92,15 @@ void for_each_run(const SampleGrid& grid, std::span<const Id> samples, const Bod
             while (!follow(count)) --count;
             while (count < most && follow(count + 1)) ++count;
             run.count = static_cast<int>(count);
+        } else if (!grid.chosen.empty()) {
+            // Chosen samples ascend: neighbours in a row have numbers that follow each other in both ways.
+            const std::size_t left = std::min(
+                samples.size() - i, grid.columns() - static_cast<std::size_t>(run.first.column));
+            const Id place = grid.chosen[samples[i]];
+            for (count = 1; count < left && samples[i + count] - samples[i] == count &&
+                            grid.chosen[samples[i + count]] - place == count;)
+                ++count;
+            run.count = static_cast<int>(count);
         }
         body(run);
     }
@@ -125,7 +134,9 @@ struct SampleTile {
     int column = 0, row = 0, width = 0, height = 0;  // of the rectangle, in samples from the window's corner
     std::size_t first_slot = 0;                      // of the rectangle's cells in `slot`
     bool whole_facet = false;                        // all of the facet's samples are here
-    double least_weight = 0;                         // the smallest weight of a corner at any sample
+    // Where lanes are pixels: how far their samples reach from the middle, in local coordinates.
+    float reach_u = 0, reach_v = 0;
+    double least_weight = 0;  // the smallest weight of a corner at any sample
     double low = 0,
            high = 0;  // of the weights' sum (FacetRays' weight) at the samples; not a number: not positive
 };
@@ -219,7 +230,9 @@ struct MixedExtent {
 /// Makes the tiles of one batch after the other, with tables of its own that are kept in between.
 class TileMaker {
   public:
-    explicit TileMaker(const SampleGrid& grid) : grid_(&grid) {}
+    /// `pixel_side`: 0, or what the grid's samples stand for: pixels of so many samples along each side. Then
+    /// lanes are pixels, and tiles count columns and rows of their samples.
+    explicit TileMaker(const SampleGrid& grid, int pixel_side = 0) : grid_(&grid), pixel_side_(pixel_side) {}
 
     /// Appends the plan's batch to `tiles`.
     void add_batch(const TilePlan& plan, std::size_t batch, SampleTiles& tiles);
@@ -229,6 +242,8 @@ class TileMaker {
   private:
     void number_mixed_facets(std::span<const MixedSample> samples);
     void add_tile(const RoughTile& rough, SampleTiles& tiles);
+    void add_pixels(const RoughTile& rough, SampleTiles& tiles);
+    void add_pixel_vector(const SampleTile& tile, std::size_t first, std::size_t count, SampleTiles& tiles);
     bool place_rows(const RoughTile& rough, const SampleTile& tile);
     void begin_list(std::size_t samples);
     void list_rows(const SampleTile& tile);
@@ -236,6 +251,7 @@ class TileMaker {
     void add_vector(const SampleTile& tile, std::size_t first, std::size_t count, SampleTiles& tiles);
 
     const SampleGrid* grid_;
+    int pixel_side_ = 0;
     std::vector<Id> cells_;  // samples by band, column and row
     std::vector<std::uint32_t> band_ends_;
     std::vector<int> first_column_, last_column_;  // by row of the tile, and of three empty rows after it

@@ -56,6 +56,13 @@ struct LocalScale {
     float middle, scale;
 };
 
+void add_empty_boxes(SampleTiles& tiles) {
+    VectorBoxes empty{};
+    std::fill_n(empty.centre_u, kLanes, 1e9f);
+    std::fill_n(empty.centre_v, kLanes, 1e9f);
+    tiles.boxes.push_back(empty);
+}
+
 /// What the lines span, in one lane of a tile's boxes.
 void put_range(const Lines& lines, const LocalScale& local, float& centre, float& half) {
     constexpr float kRound = 1e-6f;
@@ -75,7 +82,7 @@ bool TileMaker::place_rows(const RoughTile& rough, const SampleTile& tile) {
     first_column_.assign(height + kBand - 1, tile.width);
     last_column_.assign(height + kBand - 1, -1);
     row_sample_.assign(height + kBand - 1, 0);
-    bool whole_rows = grid_->in_rows();
+    bool whole_rows = grid_->in_rows() || !grid_->chosen.empty();
     for_each_run(*grid_, rough.samples, [&](const LatticeRun& run) {
         const int x = run.first.column - tile.column;
         const std::size_t y = static_cast<std::size_t>(run.first.row - tile.row);
@@ -171,12 +178,7 @@ void TileMaker::add_vector(const SampleTile& tile, std::size_t first, std::size_
     SampleVector& vector = tiles.vectors.emplace_back();
     for (std::size_t lane = 0; lane < kLanes; ++lane) vector.u[lane] = across.at(x[lane]);
     for (std::size_t lane = 0; lane < kLanes; ++lane) vector.v[lane] = down.at(y[lane]);
-    if (number % kLanes == 0) {
-        VectorBoxes empty{};
-        std::fill_n(empty.centre_u, kLanes, 1e9f);
-        std::fill_n(empty.centre_v, kLanes, 1e9f);
-        tiles.boxes.push_back(empty);
-    }
+    if (number % kLanes == 0) add_empty_boxes(tiles);
     VectorBoxes& boxes = tiles.boxes.back();
     put_range(x, across, boxes.centre_u[number % kLanes], boxes.half_u[number % kLanes]);
     put_range(y, down, boxes.centre_v[number % kLanes], boxes.half_v[number % kLanes]);
@@ -217,6 +219,93 @@ void TileMaker::add_tile(const RoughTile& rough, SampleTiles& tiles) {
     tiles.tiles.push_back(tile);
 }
 
+namespace {
+
+/// The tile's columns or rows of samples as pixels of `side` samples, in local coordinates.
+struct PixelScale {
+    PixelScale(int lines, int side)
+        : step(2.0f * static_cast<float>(side) / static_cast<float>(lines - 1)),
+          reach(static_cast<float>(side - 1) / static_cast<float>(lines - 1)) {}
+    /// The middle of a pixel.
+    float at(std::uint8_t pixel) const { return -1 + reach + static_cast<float>(pixel) * step; }
+
+    float step, reach;
+};
+
+/// As put_range(), of pixels with all their samples.
+void put_pixel_range(std::span<const std::uint8_t> pixels, const PixelScale& local, float& centre,
+                     float& half) {
+    constexpr float kRound = 2e-6f;
+    const auto [first, last] = std::minmax_element(pixels.begin(), pixels.end());
+    const float low = local.at(*first), high = local.at(*last);
+    centre = (low + high) / 2;
+    half = (high - low) / 2 + local.reach + kRound;
+}
+
+}  // namespace
+
+void TileMaker::add_pixel_vector(const SampleTile& tile, std::size_t first, std::size_t count,
+                                 SampleTiles& tiles) {
+    const std::size_t number = tiles.vectors.size() - tile.first_vector;
+    const PixelScale across(tile.width, pixel_side_), down(tile.height, pixel_side_);
+    SampleVector& vector = tiles.vectors.emplace_back();
+    VectorSamples& ids = tiles.samples.emplace_back();
+    tiles.valid.push_back(static_cast<std::uint16_t>((1u << count) - 1));
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::size_t from = first + std::min(lane, count - 1);
+        vector.u[lane] = across.at(column_[from]);
+        vector.v[lane] = down.at(row_[from]);
+        ids.sample[lane] = sample_[from];
+    }
+    if (number % kLanes == 0) add_empty_boxes(tiles);
+    VectorBoxes& boxes = tiles.boxes.back();
+    const std::size_t lane = number % kLanes;
+    put_pixel_range(std::span(column_).subspan(first, count), across, boxes.centre_u[lane],
+                    boxes.half_u[lane]);
+    put_pixel_range(std::span(row_).subspan(first, count), down, boxes.centre_v[lane], boxes.half_v[lane]);
+}
+
+/// As add_tile(), of pixels that lie in the facet with all their samples.
+void TileMaker::add_pixels(const RoughTile& rough, SampleTiles& tiles) {
+    constexpr float kRound = 1 + 1e-5f;
+    const int side = pixel_side_;
+    SampleTile pixels;  // what the lists are made of: lines are pixels
+    pixels.samples = static_cast<std::uint32_t>(rough.samples.size());
+    pixels.column = rough.extent.x0;
+    pixels.row = rough.extent.y0;
+    pixels.width = rough.extent.x1 - rough.extent.x0 + 1;
+    pixels.height = rough.extent.y1 - rough.extent.y0 + 1;
+    if (place_rows(rough, pixels))
+        list_rows(pixels);
+    else
+        list_cells(rough, pixels);
+
+    SampleTile tile = pixels;
+    tile.rays = static_cast<Id>(tiles.rays.size() - 1);
+    tile.facet = static_cast<Id>(rough.facet.facet);
+    tile.first_vector = static_cast<std::uint32_t>(tiles.vectors.size());
+    tile.first_boxes = static_cast<std::uint32_t>(tiles.boxes.size());
+    tile.first_slot = tiles.slot.size();
+    tile.column *= side, tile.row *= side, tile.width *= side, tile.height *= side;
+    tile.reach_u = kRound * PixelScale(tile.width, side).reach;
+    tile.reach_v = kRound * PixelScale(tile.height, side).reach;
+    // The first and the last row of samples of each row of pixels: what is in between lies in their hull.
+    std::vector<int> first(static_cast<std::size_t>(tile.height), tile.width),
+        last(static_cast<std::size_t>(tile.height), -1);
+    for (int y = 0; y < pixels.height; ++y)
+        for (const int row : {y * side, (y + 1) * side - 1}) {
+            first[static_cast<std::size_t>(row)] = first_column_[static_cast<std::size_t>(y)] * side;
+            last[static_cast<std::size_t>(row)] = (last_column_[static_cast<std::size_t>(y)] + 1) * side - 1;
+        }
+    SampleGrid samples = *grid_;
+    samples.side = side;
+    bound_weights(rough.facet, samples, {first, last}, tile);
+    for (std::size_t at = 0; at < tile.samples; at += kLanes)
+        add_pixel_vector(tile, at, std::min<std::size_t>(kLanes, tile.samples - at), tiles);
+    tile.vectors = static_cast<std::uint32_t>(tiles.vectors.size()) - tile.first_vector;
+    tiles.tiles.push_back(tile);
+}
+
 void TileMaker::add_batch(const TilePlan& plan, std::size_t batch, SampleTiles& tiles) {
     const TileGroup groups = plan.batches[batch];
     tiles.batches.push_back({static_cast<std::uint32_t>(tiles.groups.size()), groups.count});
@@ -229,7 +318,10 @@ void TileMaker::add_batch(const TilePlan& plan, std::size_t batch, SampleTiles& 
             const bool same_facet =
                 tiles.rays.size() > first_rays && t > 0 && plan.tiles[t - 1].facet.facet == rough.facet.facet;
             if (!same_facet) tiles.rays.push_back(make_facet_rays(rough.facet));
-            add_tile(rough, tiles);
+            if (pixel_side_ > 0)
+                add_pixels(rough, tiles);
+            else
+                add_tile(rough, tiles);
         }
     }
 }

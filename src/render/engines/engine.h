@@ -33,8 +33,9 @@ class Viewer {
 
     /// Whether it can tell which samples make fragments: engines that project, without outlines.
     virtual bool has_keys() const = 0;
-    /// See find_fragment_keys(). Of viewers with keys.
+    /// See find_fragment_keys() and find_pixel_keys(). Of viewers with keys.
     virtual void find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) = 0;
+    virtual void find_keys_of_pixels(const SampleGrid& grid, std::span<FragmentKey> keys) = 0;
     /// The key of a sample of its own views.
     virtual FragmentKey key_of(const SampleViews& views, const SampleView& view) const = 0;
 };

@@ -50,6 +50,7 @@ class FacetViewer : public Viewer {
     const CameraModel* exact_camera() const override { return frame_.camera.model.get(); }
     bool has_keys() const override { return has_keys_; }
     void find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) override;
+    void find_keys_of_pixels(const SampleGrid& grid, std::span<FragmentKey> keys) override;
     FragmentKey key_of(const SampleViews& views, const SampleView& view) const override;
 
   private:
@@ -323,6 +324,10 @@ FacetViewer::FacetViewer(const World& world, Frame frame, const EngineChoice& en
 
 void FacetViewer::find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) {
     find_fragment_keys({world_, frame_, windows_, paths_, nested_, rims_}, grid, keys);
+}
+
+void FacetViewer::find_keys_of_pixels(const SampleGrid& grid, std::span<FragmentKey> keys) {
+    find_pixel_keys({world_, frame_, windows_, paths_, nested_, rims_}, grid, keys);
 }
 
 FragmentKey FacetViewer::key_of(const SampleViews& views, const SampleView& view) const {

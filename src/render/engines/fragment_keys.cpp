@@ -10,20 +10,12 @@
 
 namespace trilens {
 
-namespace {
-
-/// How a path fares whose end lies within bounds: it ends at what it sees, it goes on to the next optic, or
-/// the bounds do not tell.
-enum class Fate : std::uint8_t { kEnds, kGoesOn, kUnknown };
-
 Fate fate_before_next(const Visible& seen, double next, bool touches) {
     if (!seen.seen()) return Fate::kGoesOn;
     if (seen.t_high <= next * (1 + kTouch)) return Fate::kEnds;
     if (touches) return seen.t_high <= next * (1 + kNearTouch) ? Fate::kEnds : Fate::kUnknown;
     return seen.t_low > next * (1 + kTouch) ? Fate::kGoesOn : Fate::kUnknown;
 }
-
-}  // namespace
 
 std::vector<Id> owners_of_node(const PathNode& node, const std::vector<Id>& leaf,
                                std::span<const char> came) {
@@ -82,16 +74,29 @@ void HistoryKeys::join(const PreparedScene& objects, Id index, std::span<Fragmen
     });
 }
 
+bool surely_before(const Visible& one, const Visible& other) {
+    constexpr float kRoomInT = 1e-6f;  // of t: what kDepthTie and the rounding of bounds take up
+    return one.t_high < other.t_low - kRoomInT * std::fabs(other.t_low);
+}
+
 namespace {
 
-constexpr std::size_t kRunsTogether = 4;
-constexpr float kRoomInT = 1e-6f;  // of t: what kDepthTie and the rounding of bounds take up
+constexpr std::size_t kRunsTogether = 4, kSamplesTogether = 4096;
 
-/// What is seen first of all surfaces: the optic and its facet, or (kNone) an object's triangle.
-struct FirstSeen {
-    Visible seen;
-    Id optic = kNone;
-};
+/// Calls body(first sample of the part, that of the grid, count) for runs of all of a part's samples, by many
+/// threads.
+template <typename Body>
+void for_each_part(const SampleGrid& part, const SampleGrid& grid, const Body& body) {
+    if (!part.chosen.empty()) {
+        parallel_for(part.size(), kSamplesTogether,
+                     [&](std::size_t from, std::size_t to) { body(from, from, to - from); });
+        return;
+    }
+    const std::size_t run = part.size() / part.runs();
+    parallel_for(part.runs(), kRunsTogether, [&](std::size_t from, std::size_t to) {
+        for (std::size_t y = from; y < to; ++y) body(y * run, part.sample_in(grid, y * run), run);
+    });
+}
 
 class KeyFinder {
   public:
@@ -145,11 +150,6 @@ Ray KeyFinder::camera_ray(std::size_t sample) const {
     return sample_ray(mesh, facet, facet_weights(mesh, facet), grid_.position(sample));
 }
 
-/// Whether the one is surely nearer.
-bool surely_before(const Visible& one, const Visible& other) {
-    return one.t_high < other.t_low - kRoomInT * std::fabs(other.t_low);
-}
-
 void KeyFinder::meet_optic(std::size_t index, const Visible& seen, std::size_t sample) {
     FirstSeen& first = first_[sample];
     if (seen.t_high > reach()) alone_[sample] = 1;
@@ -177,14 +177,10 @@ void KeyFinder::see_optic(std::size_t index, const FacetSamples& owned) {
         find_visible(facets, mesh, owned, part, visible);
     else
         find_visible(facets, mesh, rasterize_facets(mesh, part), part, visible);
-    const std::size_t run = part.size() / part.runs();
-    parallel_for(part.runs(), kRunsTogether, [&](std::size_t from, std::size_t to) {
-        for (std::size_t y = from; y < to; ++y) {
-            const std::size_t first = part.sample_in(grid_, y * run);
-            for (std::size_t x = 0; x < run; ++x) {
-                const Visible& seen = visible[y * run + x];
-                if (seen.seen() && seen.t_low <= reach()) meet_optic(index, seen, first + x);
-            }
+    for_each_part(part, grid_, [&](std::size_t here, std::size_t there, std::size_t count) {
+        for (std::size_t x = 0; x < count; ++x) {
+            const Visible& seen = visible[here + x];
+            if (seen.seen() && seen.t_low <= reach()) meet_optic(index, seen, there + x);
         }
     });
 }
@@ -218,15 +214,9 @@ void KeyFinder::follow_optic(std::size_t index, std::span<FragmentKey> keys) con
     const FramedOptic& framed = params_.frame.optics[index];
     std::vector<Id> owner(part.size(), kNone);
     std::vector<FragmentKey> joint(part.size(), kAlone);
-    const std::size_t run = part.size() / part.runs();
-    const auto for_each_run = [&](const auto& body) {
-        parallel_for(part.runs(), kRunsTogether, [&](std::size_t from, std::size_t to) {
-            for (std::size_t y = from; y < to; ++y) body(y * run, part.sample_in(grid_, y * run));
-        });
-    };
     const std::vector<Id>& face = framed.facets->grid().facet_face;
-    for_each_run([&](std::size_t here, std::size_t there) {
-        for (std::size_t x = 0; x < run; ++x) {
+    for_each_part(part, grid_, [&](std::size_t here, std::size_t there, std::size_t count) {
+        for (std::size_t x = 0; x < count; ++x) {
             const FirstSeen& first = first_[there + x];
             if (first.optic != index || alone_[there + x]) continue;
             const std::size_t s = here + x;
@@ -254,8 +244,8 @@ void KeyFinder::follow_optic(std::size_t index, std::span<FragmentKey> keys) con
     });
     HistoryKeys histories({paths, part, leaf});
     for (const Id node : nodes_in_order(paths)) histories.join(prepared_objects(params_.world), node, joint);
-    for_each_run([&](std::size_t here, std::size_t there) {
-        for (std::size_t x = 0; x < run; ++x)
+    for_each_part(part, grid_, [&](std::size_t here, std::size_t there, std::size_t count) {
+        for (std::size_t x = 0; x < count; ++x)
             if (first_[there + x].optic == index) keys[there + x] = joint[here + x];
     });
 }

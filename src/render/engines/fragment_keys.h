@@ -24,6 +24,22 @@ struct DrawnSamples {
     const std::vector<Id>& leaf;  // per sample; kNone: it is not drawn
 };
 
+/// How a path fares whose end lies within bounds: it ends at what it sees, it goes on to the next optic, or
+/// the bounds do not tell.
+enum class Fate : std::uint8_t { kEnds, kGoesOn, kUnknown };
+
+/// `next`: t of the next optic.
+Fate fate_before_next(const Visible& seen, double next, bool touches);
+
+/// What is seen first of all surfaces: the optic and its facet, or (kNone) an object's triangle.
+struct FirstSeen {
+    Visible seen;
+    Id optic = kNone;
+};
+
+/// Whether the one is surely nearer.
+bool surely_before(const Visible& one, const Visible& other);
+
 /// Per sample the node's facet, if its path came as far as this node. `came`: per sample, whether its path
 /// goes on from the node's parent; empty: none does. Not asked where the node has no parent.
 std::vector<Id> owners_of_node(const PathNode& node, const std::vector<Id>& leaf, std::span<const char> came);
@@ -58,9 +74,14 @@ struct FragmentKeysParams {
     const OpticRims& rims;
 };
 
+/// The key of every pixel of the grid's window, in rows: what find_fragment_keys() gives for all its samples,
+/// where that is surely one; else kAlone. `grid`: with all its samples, several in a pixel. Works out facets
+/// as find_fragment_keys() does.
+void find_pixel_keys(const FragmentKeysParams& params, const SampleGrid& grid, std::span<FragmentKey> keys);
+
 /// The key of every sample of the grid: fragment_key() of the view that the exact projector's viewer has of
 /// it, or kAlone where bounds do not decide it, or its paths are traced or lead over nested optics. Works out
-/// the facets that are seen and were not before. `grid`: in lattice order, all its samples.
+/// the facets that are seen and were not before. `grid`: in lattice order.
 void find_fragment_keys(const FragmentKeysParams& params, const SampleGrid& grid,
                         std::span<FragmentKey> keys);
 

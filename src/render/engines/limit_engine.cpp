@@ -76,6 +76,7 @@ class LimitViewer : public Viewer {
     const CameraModel* exact_camera() const override { return camera_.model.get(); }
     bool has_keys() const override { return false; }
     void find_keys(const SampleGrid&, std::span<FragmentKey>) override { has_none(); }
+    void find_keys_of_pixels(const SampleGrid&, std::span<FragmentKey>) override { has_none(); }
     FragmentKey key_of(const SampleViews&, const SampleView&) const override { has_none(); }
 
   private:

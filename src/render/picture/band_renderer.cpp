@@ -121,13 +121,18 @@ Image empty_image(const World& world, const LayerRequest& request) {
 /// A band of rows on its way from what its samples see to the pixels of the image.
 struct Band {
     SampleGrid grid{};
-    SampleViews views, centres;  // centres: only where a pixel has several samples
+    SampleViews views,
+        centres;  // centres: only where a pixel has several samples, and no fragments have them
+    bool filter_reaches = false;  // beyond the pixel
     std::unique_ptr<FilteredSamples> filtered;
     std::unique_ptr<FragmentColours> fragments;
     LayerStatistics counts;
 
     /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
-    const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
+    const SampleViews& middle() const {
+        if (fragments && !filter_reaches) return fragments->centres();
+        return grid.side > 1 ? centres : views;
+    }
     /// How often the samples of a pixel of the grid are shaded.
     std::size_t fragment_count(std::size_t pixel) const {
         if (!fragments) return static_cast<std::size_t>(grid.side * grid.side);
@@ -155,7 +160,9 @@ void view_band(const BandSource& source, Band& band) {
     else if (filter.reach > 0)
         band.filtered = std::make_unique<FilteredSamples>(world, viewer, grid, filter);
     if (grid.side == 1 || (!band.filtered && !band.fragments)) viewer.view(grid, band.views);
-    if (grid.side > 1) viewer.view({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
+    band.filter_reaches = filter.reach > 0;
+    if (grid.side > 1 && (!band.fragments || band.filter_reaches))
+        viewer.view({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
 }
 
 /// Colours of the pixels of a band from `first` on, as many as there is room for.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -84,8 +85,11 @@ class SpreadContribution {
     std::optional<SeenThere> at(const Vec2& place) const;
     const Contribution& contribution() const { return contribution_; }
     bool is_whole_pixel() const { return fragment_.members.empty(); }
-    /// What its outermost samples see; fewer than kCorners where some see nothing by its map, or it has one.
+    /// What its outermost samples see, each once: few samples are outermost in several ways.
     std::span<const SeenThere> corners() const { return {corners_.data(), corner_count_}; }
+    /// The corners, as numbers in corners(); fewer than kCorners where some see nothing by its map, or it has
+    /// one sample.
+    std::span<const std::uint8_t> corner_numbers() const { return {numbers_.data(), number_count_}; }
     /// Mean base colour over its samples, or of the background; none: that of the shaded point will do.
     std::optional<Vec3> mean_base() const;
     /// Sides of the parallelogram on the surface that its samples stand for; null where it is not known.
@@ -105,7 +109,8 @@ class SpreadContribution {
     Vec2 centroid_{0};
     std::array<Vec2, 2> spread_{Vec2(1, 0), Vec2(0, 1)};  // its sides
     std::array<SeenThere, kCorners> corners_;
-    std::size_t corner_count_ = 0;
+    std::array<std::uint8_t, kCorners> numbers_;
+    std::size_t corner_count_ = 0, number_count_ = 0;
     std::optional<std::array<Vec3, 2>> footprint_;
 };
 
@@ -124,6 +129,7 @@ std::optional<SeenThere> SpreadContribution::at(const Vec2& place) const {
 void SpreadContribution::find_corners() {
     const int side = shading_.side;
     std::array<Vec2, kCorners> places;
+    places.fill(Vec2(0));
     if (fragment_.members.empty()) {
         const double low = 0.5 / side, high = 1 - low;
         places = {Vec2(low, low), Vec2(high, low), Vec2(low, high), Vec2(high, high)};
@@ -140,9 +146,16 @@ void SpreadContribution::find_corners() {
             }
         }
     }
-    for (const Vec2& place : places)
-        if (const std::optional<SeenThere> there = at(fragment_.pixel + place))
-            corners_[corner_count_++] = *there;
+    std::array<std::size_t, kCorners> known;  // by place: its number; kCorners: it sees nothing
+    for (std::size_t k = 0; k < kCorners; ++k) {
+        const auto same =
+            static_cast<std::size_t>(std::find(places.begin(), places.end(), places[k]) - places.begin());
+        known[k] = same < k ? known[same] : kCorners;
+        if (same == k)
+            if (const std::optional<SeenThere> there = at(fragment_.pixel + places[k]))
+                corners_[known[k] = corner_count_++] = *there;
+        if (known[k] < kCorners) numbers_[number_count_++] = static_cast<std::uint8_t>(known[k]);
+    }
 }
 
 /// Each sample stands for its own cell of the lattice, a square with a twelfth of its area as variance.
@@ -265,14 +278,16 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
         if (!is_spread(waiting_[i])) continue;
         const SurfaceLook look =
             look_at(shading_.world.shading, *waiting_[i].contribution().seen.hit, base[i]);
-        const std::size_t n = waiting_[i].corners().size();
+        const std::span<const std::uint8_t> numbers = waiting_[i].corner_numbers();
+        const std::size_t n = numbers.size();
         bool uneven = !look.is_matt() && look.roughness < kPolished;
         ArrivedLight mean;
-        for (ReachingLight at : std::span(there).subspan(count, n)) {
+        for (const std::size_t number : numbers) {
+            ReachingLight at = there[count + number];
             uneven = uneven || at.lights != centre[i].lights;
             mean += at.arrived /= double(n);
         }
-        count += n;
+        count += waiting_[i].corners().size();
         const bool whole = waiting_[i].is_whole_pixel();
         const Vec3 caustic = centre[i].caustic;  // a mean over all of them already
         if (caustic != Vec3(0)) light[i] -= caustic;

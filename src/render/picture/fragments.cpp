@@ -27,9 +27,70 @@ struct FragmentColours::PixelRow {
     std::vector<Fragment> fragments;
     std::vector<std::uint16_t> members;
     std::vector<std::uint32_t> counts;  // fragments per pixel
-    // Of the pixel at hand: the keys met, and each sample's number among them.
-    std::vector<FragmentKey> keys;
+    // Of the pixel at hand: the samples' keys; those met, and each sample's number among them.
+    std::vector<FragmentKey> samples, keys;
     std::vector<std::uint16_t> key_of;
+};
+
+/// What the pixels' samples see: of pixels that surely are one fragment their key, of the others the keys of
+/// all samples.
+class FragmentColours::OpenPixels {
+  public:
+    OpenPixels(Viewer& viewer, const SampleGrid& grid) : grid_(grid), of_pixel_(grid.pixels()) {
+        viewer.find_keys_of_pixels(grid, of_pixel_);
+        // Where few pixels are known, none is: samples in whole rows are found faster.
+        const auto known = static_cast<std::size_t>(
+            std::count_if(of_pixel_.begin(), of_pixel_.end(), [](FragmentKey key) { return key != kAlone; }));
+        if (2 * known < of_pixel_.size()) std::fill(of_pixel_.begin(), of_pixel_.end(), kAlone);
+        const std::vector<Id> chosen = choose_samples();
+        keys_.resize(chosen.size());
+        if (chosen.empty()) return;
+        SampleGrid samples = grid;
+        if (chosen.size() < grid.size()) samples.chosen = chosen;
+        viewer.find_keys(samples, keys_);
+    }
+
+    /// That of all samples; kAlone: it is not known to be one.
+    FragmentKey of_pixel(std::size_t pixel) const { return of_pixel_[pixel]; }
+    /// The keys of a pixel's samples, in rows.
+    void get(std::size_t pixel, std::vector<FragmentKey>& keys) const {
+        const std::size_t side = static_cast<std::size_t>(grid_.side);
+        const RowOfPixels& row = rows_[pixel / static_cast<std::size_t>(grid_.width())];
+        keys.clear();
+        for (std::size_t j = 0; j < side; ++j) {
+            const FragmentKey* const first = &keys_[row.first + (j * row.open + rank_[pixel]) * side];
+            keys.insert(keys.end(), first, first + side);
+        }
+    }
+
+  private:
+    struct RowOfPixels {
+        std::size_t first = 0, open = 0;  // of its samples in keys_; open pixels
+    };
+
+    /// The samples of open pixels, in rows of the lattice.
+    std::vector<Id> choose_samples() {
+        const std::size_t width = static_cast<std::size_t>(grid_.width()),
+                          side = static_cast<std::size_t>(grid_.side);
+        std::vector<Id> chosen;
+        rank_.resize(grid_.pixels());
+        rows_.resize(static_cast<std::size_t>(grid_.height()));
+        for (std::size_t y = 0; y < rows_.size(); ++y) {
+            rows_[y].first = chosen.size();
+            for (std::size_t p = y * width; p < (y + 1) * width; ++p)
+                if (of_pixel_[p] == kAlone) rank_[p] = static_cast<std::uint32_t>(rows_[y].open++);
+            for (std::size_t row = y * side; rows_[y].open > 0 && row < (y + 1) * side; ++row)
+                for (std::size_t x = 0; x < width; ++x)
+                    for (std::size_t i = 0; of_pixel_[y * width + x] == kAlone && i < side; ++i)
+                        chosen.push_back(static_cast<Id>(row * grid_.columns() + x * side + i));
+        }
+        return chosen;
+    }
+
+    SampleGrid grid_;
+    std::vector<FragmentKey> of_pixel_, keys_;
+    std::vector<std::uint32_t> rank_;  // of an open pixel among those of its row
+    std::vector<RowOfPixels> rows_;
 };
 
 FragmentColours::FragmentColours(const World& world, Viewer& viewer, const SampleGrid& window,
@@ -38,8 +99,9 @@ FragmentColours::FragmentColours(const World& world, Viewer& viewer, const Sampl
       viewer_(viewer),
       filter_(filter),
       grid_(with_margin(window, world.scene.film, filter.reach)) {
+    const OpenPixels open(viewer_, grid_);
     viewer_.view({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
-    find_fragments();
+    find_fragments(open);
     shaded_.resize(fragments_.size());
     shade_centres();
     shade_samples();
@@ -61,14 +123,14 @@ std::size_t FragmentColours::lattice_sample(std::size_t pixel, int inside) const
 }
 
 /// One fragment per key, in the order in which they are met; a sample that stands alone is one by itself.
-/// `keys`: of the grid.
-void FragmentColours::split_pixel(std::size_t pixel, std::span<const FragmentKey> keys, PixelRow& row) const {
+/// `row` has their keys.
+void FragmentColours::split_pixel(std::size_t pixel, PixelRow& row) const {
     const int side = grid_.side;
     row.keys.clear();
     row.key_of.clear();
     std::size_t last = 0;
     for (int inside = 0; inside < side * side; ++inside) {
-        const FragmentKey key = keys[lattice_sample(pixel, inside)];
+        const FragmentKey key = row.samples[static_cast<std::size_t>(inside)];
         if (key == kAlone || row.keys.empty() || key != row.keys[last]) {
             const auto found =
                 key == kAlone ? row.keys.end() : std::find(row.keys.begin(), row.keys.end(), key);
@@ -104,28 +166,29 @@ void FragmentColours::split_pixel(std::size_t pixel, std::span<const FragmentKey
     }
 }
 
-void FragmentColours::find_fragments() {
-    std::vector<FragmentKey> keys(grid_.size());
-    viewer_.find_keys(grid_, keys);
+void FragmentColours::find_fragments(const OpenPixels& open) {
     const std::size_t width = static_cast<std::size_t>(grid_.width()),
-                      height = static_cast<std::size_t>(grid_.height()),
-                      side = static_cast<std::size_t>(grid_.side);
+                      height = static_cast<std::size_t>(grid_.height());
+    const std::size_t per_pixel = static_cast<std::size_t>(grid_.side * grid_.side);
     std::vector<PixelRow> rows(height);
     parallel_for(height, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t y = from; y < to; ++y) {
             PixelRow& row = rows[y];
             for (std::size_t x = 0; x < width; ++x) {
                 const std::size_t before = row.fragments.size(), pixel = y * width + x;
-                const FragmentKey first = keys[lattice_sample(pixel, 0)];
-                bool one = first != kAlone;
-                for (std::size_t j = 0; one && j < side; ++j) {
-                    const FragmentKey* line = &keys[(y * side + j) * grid_.columns() + x * side];
-                    for (std::size_t i = 0; i < side; ++i) one = one && line[i] == first;
+                FragmentKey all = open.of_pixel(pixel);
+                if (all == kAlone) {
+                    open.get(pixel, row.samples);
+                    const bool one = std::all_of(row.samples.begin(), row.samples.end(),
+                                                 [&](FragmentKey key) { return key == row.samples[0]; });
+                    if (one) all = row.samples[0];
                 }
-                if (one && viewer_.key_of(centres_, centres_.samples[pixel]) == first)
+                if (all != kAlone && viewer_.key_of(centres_, centres_.samples[pixel]) == all) {
                     row.fragments.push_back({});
-                else
-                    split_pixel(pixel, keys, row);
+                } else {
+                    if (open.of_pixel(pixel) != kAlone) row.samples.assign(per_pixel, all);
+                    split_pixel(pixel, row);
+                }
                 row.counts.push_back(static_cast<std::uint32_t>(row.fragments.size() - before));
             }
         }

@@ -76,6 +76,9 @@ class FragmentColours {
 
     const FragmentCounts& counts() const { return counts_; }
 
+    /// What the middles of the pixels show: of the window where the filter reaches no other pixel.
+    const SampleViews& centres() const { return centres_; }
+
   private:
     struct Fragment {
         Id sample = kNone;  // of the lattice, where it is shaded; kNone: at the pixel's centre
@@ -83,9 +86,10 @@ class FragmentColours {
         std::uint32_t members = 0;  // in members_; 0: all of the pixel's samples
     };
     struct PixelRow;
+    class OpenPixels;
 
-    void find_fragments();
-    void split_pixel(std::size_t pixel, std::span<const FragmentKey> keys, PixelRow& row) const;
+    void find_fragments(const OpenPixels& open);
+    void split_pixel(std::size_t pixel, PixelRow& row) const;
     void shade_centres();
     void shade_samples();
     std::span<const std::uint16_t> members_of(const Fragment& fragment) const {
