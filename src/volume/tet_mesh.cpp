@@ -124,10 +124,6 @@ TetMesh make_tet_mesh(CellSoup soup) {
     return mesh;
 }
 
-std::size_t cell_count(const RegularGrid& grid) {
-    return 6 * (grid.size[0] - 1) * (grid.size[1] - 1) * (grid.size[2] - 1);
-}
-
 TetMesh make_tet_mesh(RegularGrid grid) {
     const std::size_t nx = grid.size[0], ny = grid.size[1], nz = grid.size[2];
     TRILENS_CHECK(nx >= 2 && ny >= 2 && nz >= 2 && grid.scalars.size() == nx * ny * nz,

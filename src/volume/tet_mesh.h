@@ -53,7 +53,4 @@ struct RegularGrid {
 };
 TetMesh make_tet_mesh(RegularGrid grid);
 
-/// Six for each box.
-std::size_t cell_count(const RegularGrid& grid);
-
 }  // namespace trilens

@@ -9,7 +9,6 @@ VolumeGeometry::VolumeGeometry(std::shared_ptr<const TetMesh> cells)
     parallel_for(gradients_.size(), 4096, [&](std::size_t from, std::size_t to) {
         for (std::size_t c = from; c < to; ++c) gradients_[c] = scalar_gradient(*cells_, static_cast<Id>(c));
     });
-    for (const Vec3& point : cells_->points) bounds_.include(point);
 }
 
 const CellFaces& VolumeGeometry::faces() const {

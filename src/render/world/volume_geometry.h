@@ -18,7 +18,6 @@ class VolumeGeometry {
 
     const TetMesh& cells() const { return *cells_; }
     const std::vector<Vec3>& gradients() const { return gradients_; }  // per cell
-    const Box& bounds() const { return bounds_; }
 
     /// For the projector.
     const CellFaces& faces() const;
@@ -29,7 +28,6 @@ class VolumeGeometry {
   private:
     std::shared_ptr<const TetMesh> cells_;
     std::vector<Vec3> gradients_;
-    Box bounds_;
     Lazy<CellFaces> faces_;
     Lazy<PreparedScene> prepared_;
     Lazy<BoxTree> boxes_;
