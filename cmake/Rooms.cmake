@@ -71,9 +71,12 @@ function(trilens_room name folder)
   endforeach()
   if("hwy::hwy" IN_LIST ROOM_DOORS AND NOT EMSCRIPTEN)
     # Instruction sets that bring this code nothing: SSSE3, and those of AVX-512 beyond its first (the last two are
-    # later versions' names for bits).
-    target_compile_definitions(trilens_${name} PRIVATE
-      "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|(1LL<<6)|(1LL<<4))")
+    # later versions' names for bits). Sanitized, where it is compiled for minutes: AVX-512 altogether.
+    set(without "HWY_SSSE3|HWY_AVX3_DL|(1LL<<6)|(1LL<<4)")
+    if(TRILENS_SANITIZE)
+      string(APPEND without "|HWY_AVX3")
+    endif()
+    target_compile_definitions(trilens_${name} PRIVATE "HWY_DISABLED_TARGETS=(${without})")
   endif()
   set_property(TARGET trilens_${name} PROPERTY TRILENS_DOORS "${ROOM_DOORS}")
   trilens_unite(trilens_${name})
