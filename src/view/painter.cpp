@@ -65,7 +65,7 @@ struct Painter::Work {
     std::optional<Renderer> renderer, birds_eye;
     bool renderer_is_current = false;  // its scene is the state's, but for the film
     Film film_now;                     // of the renderer
-    double full_seconds = 1;           // that all pixels take, as far as is known
+    double full_seconds = 16;          // that all pixels take, as far as is known; at first much
     Image projected, truth;            // of the state, at the stage drawn last
     std::vector<LayerComparison> layers;
     std::vector<std::string> scene_warnings;
