@@ -135,9 +135,6 @@ Case case_of(const std::string& name) {
     // pixel, a part of a pixel wider where the outline is a chord of the glass's.
     if (name == "paths/wine-glass") return {name, {}, 0, 6};
     if (name == "paths/prism") return {name, {}, 1, 1};
-    // Where the bean lies on the floor its outline is a chord, a part of a pixel inside: there the floor
-    // below it is seen, which is darker than what the bean shows.
-    if (name == "hero") return {name, {}, 1, 0};
     // The tips of two holes between threads, each smaller than a pixel: off by half a pixel, none of it is
     // left in one, all of it in the other.
     if (name == "cameras/cup" || name == "caustic") return {name, {}, 4, 4};
