@@ -62,9 +62,7 @@ Box box_of_closed_form(const Surface& surface) {
     for (Id face = 0; face < surface.face_count(); ++face) {
         for (int i = 0; i < kParts * kParts; ++i) {
             const Vec2 low = Vec2(i % kParts, i / kParts) / double{kParts};
-            const SurfaceBounds part = bounder->bounds(face, low, low + 1.0 / kParts);
-            box.include(part.middle.position - part.position_radius);
-            box.include(part.middle.position + part.position_radius);
+            box.include(bounder->box(face, low, low + 1.0 / kParts));
         }
     }
     return box;
@@ -80,7 +78,7 @@ struct LimitTracer::Data {
     const Surface& surface;
     std::vector<RayPatch> patches;
     std::unique_ptr<PartPatches> by_part;  // else these, where the tree is one of parts
-    double largest_patch = 0;              // no patch is longer along any ray, its stray included
+    double largest_patch = 0;              // of `patches`: none is longer along any ray, its stray included
     double size = 0;                       // half diagonal of a box about every face's corners and middle
     Box around;                            // holds every hit
     BoxTree tree;
@@ -95,18 +93,12 @@ struct LimitTracer::Data {
     Data(const Surface& exact, const Parts& fine, const std::string& isa)
         : surface(exact),
           by_part(std::make_unique<PartPatches>(exact, fine.boxes.size(), fine.grid)),
-          largest_patch(largest_of(fine.boxes)),
           size(0.5 * length(box_of_all(fine.boxes).size())),
           around(box_of_all(fine.boxes)),
           tree(fine.boxes, isa) {}
 
     const RayPatch& patch(Id number) const { return by_part ? by_part->patch(number) : patches[number]; }
 
-    static double largest_of(const std::vector<Box>& parts) {
-        double largest = 0;
-        for (const Box& part : parts) largest = std::max(largest, length(part.size()));
-        return kRayStraySafety * largest;
-    }
     static Box box_of_all(const std::vector<Box>& parts) {
         Box box;
         for (const Box& part : parts) box.include(part);

@@ -1,3 +1,4 @@
+// Facets and their strays, by samples of the surface; a part's at once.
 #include "intersect/ray_patches.h"
 
 #include <algorithm>

@@ -172,28 +172,41 @@ Hit first_hit_of(const PreparedScene::Data& scene, const SampleRay& ray, const V
     return see_first({scene, ray, centre}, true, stack);
 }
 
-void draw_scalar(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
-                 const SampleGrid& grid, std::span<Hit> hits, bool cull) {
-    constexpr std::size_t kSamplesTogether = 512;
+namespace {
+
+/// Calls use(f, weights, rays, samples) for some samples of a facet after the other, on threads: facets that
+/// have rays and are not seen edge-on.
+template <typename Use>
+void for_each_facet(const RayMesh& mesh, const FacetSamples& owned, std::size_t samples_together, Use&& use) {
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         const std::span<const Id> samples = owned.of(f);
         if (!mesh.has_rays(f) || samples.empty()) continue;
         const FacetWeights weights = facet_weights(mesh, f);
         if (weights.edge_on) continue;
-        const FacetRays facet = make_facet_rays({mesh, static_cast<Id>(f), weights});
-        parallel_for(samples.size(), kSamplesTogether, [&](std::size_t from, std::size_t to) {
-            std::vector<OpenNode> stack;
-            for (std::size_t s = from; s < to; ++s) {
-                const SampleRay ray = facet.at(grid.position(samples[s]));
-                hits[samples[s]] = see_first({scene.data(), ray, facet.centre}, cull, stack);
-            }
+        const FacetRays rays = make_facet_rays({mesh, static_cast<Id>(f), weights});
+        parallel_for(samples.size(), samples_together, [&](std::size_t from, std::size_t to) {
+            use(f, weights, rays, samples.subspan(from, to - from));
         });
     }
 }
 
+}  // namespace
+
+void draw_scalar(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                 const SampleGrid& grid, std::span<Hit> hits, bool cull) {
+    const auto draw = [&](std::size_t, const FacetWeights&, const FacetRays& facet,
+                          std::span<const Id> samples) {
+        std::vector<OpenNode> stack;
+        for (const Id sample : samples) {
+            const SampleRay ray = facet.at(grid.position(sample));
+            hits[sample] = see_first({scene.data(), ray, facet.centre}, cull, stack);
+        }
+    };
+    for_each_facet(mesh, owned, 512, draw);
+}
+
 void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                     const SampleGrid& grid, std::span<const double> until, const TakeCrossings& take) {
-    constexpr std::size_t kSamplesTogether = 64;
     constexpr double kRoom = 1e-9;  // of the scene's size
     Box bounds;
     if (!scene.data().bvh().nodes.empty()) bounds = scene.data().bvh().nodes[0].box;
@@ -202,33 +215,27 @@ void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const Facet
         return Box{bounds.low - room, bounds.high + room}.holds(start);
     };
     TRILENS_CHECK(until.size() == grid.size(), "one length per sample of the grid");
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-        const std::span<const Id> samples = owned.of(f);
-        if (!mesh.has_rays(f) || samples.empty()) continue;
-        const FacetWeights weights = facet_weights(mesh, f);
-        if (weights.edge_on) continue;
-        const FacetRays facet = make_facet_rays({mesh, static_cast<Id>(f), weights});
-        parallel_for(samples.size(), kSamplesTogether, [&](std::size_t from, std::size_t to) {
-            std::vector<OpenNode> stack;
-            std::vector<Crossing> found;
-            for (std::size_t s = from; s < to; ++s) {
-                const Id sample = samples[s];
-                if (!(until[sample] > 0)) continue;
-                const Vec2 position = grid.position(sample);
-                const SampleRay ray = facet.at(position);
-                RayWalk walk{scene.data(), ray, facet.centre};
-                found.clear();
-                walk.collect(until[sample], stack, found);
-                std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
-                    return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
-                });
-                if (found.empty() && may_start_inside(facet.centre + ray.origin / ray.weight))
-                    if (const Hit behind = see_first(walk, true, stack); behind.seen())
-                        found.push_back({behind.triangle, behind.t});
-                take(sample, sample_ray(mesh, f, weights, position), found);
-            }
-        });
-    }
+    const auto collect = [&](std::size_t f, const FacetWeights& weights, const FacetRays& facet,
+                             std::span<const Id> samples) {
+        std::vector<OpenNode> stack;
+        std::vector<Crossing> found;
+        for (const Id sample : samples) {
+            if (!(until[sample] > 0)) continue;
+            const Vec2 position = grid.position(sample);
+            const SampleRay ray = facet.at(position);
+            RayWalk walk{scene.data(), ray, facet.centre};
+            found.clear();
+            walk.collect(until[sample], stack, found);
+            std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
+                return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
+            });
+            if (found.empty() && may_start_inside(facet.centre + ray.origin / ray.weight))
+                if (const Hit behind = see_first(walk, true, stack); behind.seen())
+                    found.push_back({behind.triangle, behind.t});
+            take(sample, sample_ray(mesh, f, weights, position), found);
+        }
+    };
+    for_each_facet(mesh, owned, 64, collect);
 }
 
 }  // namespace trilens
