@@ -48,16 +48,45 @@ struct Direct {
     std::vector<Hit> room, mirror;  // unset where nothing is seen
 };
 
-Direct look(const LittleRoom& room, const RayMesh& rays, const SurfaceGrid& facets,
+/// The part of the samples' window in which the mirror may be seen; all of it where one of its points does
+/// not lie before the camera.
+SampleGrid window_of(const SurfaceGrid& facets, const LinearCamera& camera, const SampleGrid& samples) {
+    Vec2 low(samples.x1, samples.y1), high(samples.x0, samples.y0);
+    for (const Vec3& point : facets.points) {
+        const Vec3 at = screen_from_world(camera, point);
+        if (at.z <= 0) return samples;
+        low = glm::min(low, Vec2(at.x / at.z, at.y / at.z));
+        high = glm::max(high, Vec2(at.x / at.z, at.y / at.z));
+    }
+    const auto between = [](double at, int first, int last) {
+        return static_cast<int>(std::clamp(at, double(first), double(last)));
+    };
+    SampleGrid part = samples;
+    part.x0 = between(std::floor(low.x) - 1, samples.x0, samples.x1);
+    part.y0 = between(std::floor(low.y) - 1, samples.y0, samples.y1);
+    part.x1 = between(std::ceil(high.x) + 1, part.x0, samples.x1);
+    part.y1 = between(std::ceil(high.y) + 1, part.y0, samples.y1);
+    return part;
+}
+
+Direct look(const LittleRoom& room, const Frame& frame, const SurfaceGrid& facets,
             const SampleGrid& samples) {
+    const LinearCamera camera = camera_of(frame);
+    const RayMesh rays = make_camera_mesh(camera, frame.width, frame.height);
     Direct direct{samples, {}, {}};
     direct.room.resize(samples.size());
     direct.mirror.resize(samples.size());
-    const FacetSamples all = rasterize_facets(rays, samples);
-    draw(*room.ready, rays, all, samples, direct.room);
+    draw(*room.ready, rays, rasterize_facets(rays, samples), samples, direct.room);
+    const SampleGrid part = window_of(facets, camera, samples);
+    if (part.size() == 0) return direct;
     TriangleScene mirror;
     append_facets(facets, 0, mirror);
-    draw(PreparedScene(mirror), rays, all, samples, direct.mirror);
+    std::vector<Hit> hits(part.size());
+    draw(PreparedScene(mirror), rays, rasterize_facets(rays, part), part, hits);
+    const std::size_t run = hits.size() / part.runs();
+    for (std::size_t s = 0; s < hits.size(); s += run)
+        std::copy_n(hits.begin() + static_cast<std::ptrdiff_t>(s), run,
+                    direct.mirror.begin() + static_cast<std::ptrdiff_t>(part.sample_in(samples, s)));
     return direct;
 }
 
@@ -65,10 +94,9 @@ Direct look(const LittleRoom& room, const RayMesh& rays, const SurfaceGrid& face
 
 std::vector<std::uint8_t> draw_frame(const LittleRoom& room, const Frame& frame) {
     const LinearCamera camera = camera_of(frame);
-    const RayMesh rays = make_camera_mesh(camera, frame.width, frame.height);
     const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
     const SampleGrid samples{0, frame.first_row, frame.width, frame.last_row, frame.side};
-    const Direct direct = look(room, rays, facets, samples);
+    const Direct direct = look(room, frame, facets, samples);
 
     // The samples that see the mirror's front belong to the facets that they see, and the room is projected
     // through these.
@@ -128,10 +156,9 @@ std::vector<float> facets_on_film(const Frame& frame) {
 }
 
 std::optional<Vec2> mirror_place(const LittleRoom& room, const Frame& frame, const Vec2& at) {
-    const RayMesh rays = make_camera_mesh(camera_of(frame), frame.width, frame.height);
     const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
-    const Direct direct = look(room, rays, facets, {x, y, x + 1, y + 1, 1});
+    const Direct direct = look(room, frame, facets, {x, y, x + 1, y + 1, 1});
     const Hit& hit = direct.mirror[0];
     if (!hit.seen() || (direct.room[0].seen() && direct.room[0].t < hit.t)) return std::nullopt;
     const std::array<Vec2, 3>& uv = facets.facet_uv[hit.triangle];

@@ -79,6 +79,16 @@ py::array_t<double> points_array(const std::vector<Vec3>& points) {
     return array_of(std::move(flat), {static_cast<py::ssize_t>(points.size()), 3});
 }
 
+py::object id_or_none(Id id) {
+    return id == kNone ? py::object(py::none()) : py::object(py::int_(id));
+}
+
+py::array pixels_array(const std::vector<Vec2>& places) {
+    std::vector<double> numbers;
+    for (const Vec2& p : places) numbers.insert(numbers.end(), {p.x, p.y});
+    return array_of(std::move(numbers), {static_cast<py::ssize_t>(places.size()), 2});
+}
+
 }  // namespace
 
 py::list caustic_list(const LineDrawing& drawing) {
@@ -86,7 +96,7 @@ py::list caustic_list(const LineDrawing& drawing) {
     for (const LineDrawing::Caustic& one : drawing.caustics) {
         py::dict dict;
         dict["path"] = one.path;
-        dict["optic"] = one.optic == kNone ? py::object(py::none()) : py::object(py::int_(one.optic));
+        dict["optic"] = id_or_none(one.optic);
         dict["sheet"] = one.sheet.sheet;
         dict["virtual"] = one.sheet.is_virtual;
         dict["points"] = points_array(one.sheet.points);
@@ -101,14 +111,25 @@ py::list caustic_list(const LineDrawing& drawing) {
     return list;
 }
 
+py::list edge_list(const LineDrawing& drawing) {
+    py::list list;
+    for (const EdgeLine& edge : drawing.edge_lines) {
+        py::dict dict;
+        dict["path"] = edge.path;
+        dict["optic"] = id_or_none(edge.optic);
+        dict["object"] = id_or_none(edge.object);
+        dict["points"] = pixels_array(edge.points);
+        list.append(dict);
+    }
+    return list;
+}
+
 py::list fold_list(const LineDrawing& drawing) {
     py::list list;
     for (const FoldCurve& fold : drawing.fold_curves) {
         py::dict dict;
-        dict["object"] = fold.object == kNone ? py::object(py::none()) : py::object(py::int_(fold.object));
-        std::vector<double> points;
-        for (const Vec2& p : fold.points) points.insert(points.end(), {p.x, p.y});
-        dict["points"] = array_of(std::move(points), {static_cast<py::ssize_t>(fold.points.size()), 2});
+        dict["object"] = id_or_none(fold.object);
+        dict["points"] = pixels_array(fold.points);
         dict["places"] = points_array(fold.places);
         list.append(dict);
     }

@@ -126,6 +126,7 @@ std::vector<SceneOverride> overrides_of(const py::dict& overrides);
 py::list caustic_list(const LineDrawing& drawing);
 
 /// A dict for each curve: object, points, places.
+py::list edge_list(const LineDrawing& drawing);
 py::list fold_list(const LineDrawing& drawing);
 
 }  // namespace trilens::python

@@ -300,17 +300,20 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
         .def_readonly("folds", &LineDrawing::folds, "How many fold curves it has.")
         .def_readonly("obj", &LineDrawing::obj,
                       "Caustics and fold curves in the world as a Wavefront OBJ; \"\" where not asked for.")
-        .def_property_readonly("caustics", &caustic_list,
-                               "The sheets of the caustics, where asked for: a list of dicts of path "
-                               "(\"reflect\", \"refract\",\n"
-                               "\"direct\": of the camera's own rays), optic (object id; None: the camera), "
-                               "sheet (0, 1), virtual\n"
-                               "(behind the optic), points (N, 3), triangles (M, 3), segments (K, 2).")
+        .def_property_readonly(
+            "caustics", &caustic_list,
+            "The sheets of the caustics, where asked for: a list of dicts of path\n"
+            "(\"reflect\", \"refract\", \"direct\": of the camera's own rays), optic (object id; None: the "
+            "camera),\n"
+            "sheet (0, 1), virtual (behind the optic), points (N, 3), triangles (M, 3), segments (K, 2).")
+        .def_property_readonly(
+            "edge_lines", &edge_list,
+            "The curves as polygonal lines: a list of dicts of path, optic (object id; None: the camera),\n"
+            "object (whose edge it is) and points (N, 2) in pixels.")
         .def_property_readonly(
             "fold_curves", &fold_list,
-            "A list of dicts of object (id on which the curve lies; None: the environment), points (N, 2) "
-            "in\n"
-            "pixels, places (N, 3): the world points seen there, in the environment unit directions.")
+            "A list of dicts of object (id on which the curve lies; None: the environment), points (N, 2)\n"
+            "in pixels, places (N, 3): the world points seen there, in the environment unit directions.")
         .def("_repr_svg_", [](const LineDrawing& drawing) { return drawing.svg; })
         .def(
             "save",
@@ -326,7 +329,7 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
             PythonCall call(py::none(), warn);
             const FrameParams frame =
                 FacetArguments{rays, std::nullopt, grid}.of(frame_params(self, resolution, camera));
-            return call.run([&] { return self.draw_lines(frame, {wire, folds, caustics, false}, call.warner()); });
+            return call.run([&] { return self.draw_lines(frame, {wire, folds, caustics}, call.warner()); });
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(), py::arg("wire") = false,
         py::arg("folds") = false, py::arg("caustics") = false, py::arg("rays") = py::none(),

@@ -261,7 +261,11 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& cho
     for (const auto& layer : drawing->layers) {
         lines.curves += layer->curves.size();
         lines.folds += layer->folds.size();
-        for (const EdgeCurve& curve : layer->curves) lines.arcs += curve.arcs.size();
+        for (const EdgeCurve& curve : layer->curves) {
+            lines.arcs += curve.arcs.size();
+            lines.edge_lines.push_back({layer->path, layer->optic, layer->scene->object[curve.triangle],
+                                        polyline_of(curve, kEdgeTolerance)});
+        }
         for (const CausticSheet& sheet : layer->caustic)
             lines.caustics.push_back({layer->path, layer->optic, sheet});
         lines.fold_curves.insert(lines.fold_curves.end(), layer->folds.begin(), layer->folds.end());

@@ -63,6 +63,7 @@ struct LineDrawing {
         CausticSheet sheet;
     };
     std::vector<Caustic> caustics;
+    std::vector<EdgeLine> edge_lines;  // the curves of the SVG, in its order of layers
     std::vector<FoldCurve> fold_curves;
     std::vector<FacetEdge> facet_edges;  // where they were chosen
 };

@@ -97,6 +97,9 @@ ScreenArc piece_of(const ScreenArc& arc, double u0, double u1);
 /// The arc's point in pixels.
 Vec2 point_of(const ScreenArc& arc, double u);
 
+/// The curve as points in pixels: straight lines between them are within `tolerance` pixels of its arcs.
+std::vector<Vec2> polyline_of(const EdgeCurve& curve, double tolerance);
+
 // A picture as lines: the outlines of what the camera and its optics show.
 
 /// The curves of one path of light.

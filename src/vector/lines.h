@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "base/math/vec.h"
@@ -25,6 +26,18 @@ struct FacetEdge {
     Id optic = kNone;  // object id
     Vec2 from{0}, to{0};
 };
+
+/// An edge of an object (a border, crease, change of material or silhouette), as far as it is drawn: a
+/// polygonal line in pixels from the film's top left, nowhere farther than kEdgeTolerance from the exact
+/// arcs.
+struct EdgeLine {
+    std::string path;   // "direct", "reflect", "refract"
+    Id optic = kNone;   // object id of the optic that shows it; kNone: the camera sees it
+    Id object = kNone;  // whose edge it is
+    std::vector<Vec2> points;
+};
+
+inline constexpr double kEdgeTolerance = 0.05;  // pixels
 
 /// A polygonal line in pixels from the film's top left; closed where it ends where it began.
 struct FoldCurve {

@@ -232,6 +232,41 @@ Vec2 point_of(const ScreenArc& arc, double u) {
     return {p.x / p.z, p.y / p.z};
 }
 
+namespace {
+
+constexpr int kMostHalvings = 16;
+
+double distance_to_line(const Vec2& p, const Vec2& from, const Vec2& to) {
+    const Vec2 along = to - from;
+    const double square = dot(along, along);
+    const double u = square > 0 ? std::clamp(dot(p - from, along) / square, 0.0, 1.0) : 0.0;
+    return length(p - from - u * along);
+}
+
+/// All points of an arc lie in the triangle of its control points, so none is farther from the chord than the
+/// middle one.
+void append_polyline(const ScreenArc& arc, double tolerance, int halvings, std::vector<Vec2>& points) {
+    const Vec2 from = point_of(arc, 0), to = point_of(arc, 1),
+               middle(arc[1].x / arc[1].z, arc[1].y / arc[1].z);
+    if (halvings > 0 && distance_to_line(middle, from, to) > tolerance) {
+        append_polyline(piece_of(arc, 0, 0.5), tolerance, halvings - 1, points);
+        append_polyline(piece_of(arc, 0.5, 1), tolerance, halvings - 1, points);
+    } else {
+        points.push_back(to);
+    }
+}
+
+}  // namespace
+
+std::vector<Vec2> polyline_of(const EdgeCurve& curve, double tolerance) {
+    std::vector<Vec2> points;
+    for (const ScreenArc& arc : curve.arcs) {
+        if (points.empty()) points.push_back(point_of(arc, 0));
+        append_polyline(arc, tolerance, kMostHalvings, points);
+    }
+    return points;
+}
+
 std::vector<EdgeCurve> edge_curves(const VectorView& view) {
     const FacetSamples owned = group_by_facet(view.facet, view.mesh.facets.size());
     const FacetsAround around = facets_around(view.mesh.facets, view.mesh.rays.size());

@@ -4,7 +4,8 @@ namespace trilens {
 
 namespace {
 
-constexpr Vec3 kFacetColour{1, 1, 1}, kFoldColour{1, 0.55, 0.1}, kImageColour{1, 0.9, 0.2};
+constexpr Vec3 kFacetColour{1, 1, 1}, kEdgeColour{0.2, 0.8, 1}, kFoldColour{1, 0.55, 0.1},
+    kImageColour{1, 0.9, 0.2};
 constexpr double kCross = 5;  // pixels from a cross's middle to its ends
 
 }  // namespace
@@ -12,6 +13,8 @@ constexpr double kCross = 5;  // pixels from a cross's middle to its ends
 std::vector<DisplayLine> stage_lines(const StagePictures& stage) {
     std::vector<DisplayLine> lines;
     for (const FacetEdge& edge : stage.facet_edges) lines.push_back({{edge.from, edge.to}, kFacetColour});
+    if (stage.drawn.edges)
+        for (const EdgeLine& edge : *stage.drawn.edges) lines.push_back({edge.points, kEdgeColour});
     if (stage.drawn.folds)
         for (const FoldCurve& fold : *stage.drawn.folds) lines.push_back({fold.points, kFoldColour});
     if (stage.drawn.place_images)

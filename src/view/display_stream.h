@@ -13,7 +13,7 @@
 namespace trilens {
 
 /// Shows what a viewer draws: the projected picture under the scene's name, the truth beside it once it is
-/// drawn, facets, folds and the images of a place as lines over the first.
+/// drawn, facets, edges, folds and the images of a place as lines over the first.
 class DisplayStream {
   public:
     /// `name`: of the projected picture. Throws UsageError for what is no address, OutputError where nobody
@@ -42,8 +42,8 @@ class DisplayStream {
 /// Pictures are sent no oftener than this, but for the last ones of a state.
 inline constexpr double kDisplayPause = 0.1;  // seconds
 
-/// The lines over the picture of a stage, by their colours: facets white, folds orange, a place's images
-/// yellow crosses.
+/// The lines over the picture of a stage, by their colours: facets white, edges blue, folds orange, a place's
+/// images yellow crosses.
 std::vector<DisplayLine> stage_lines(const StagePictures& stage);
 
 }  // namespace trilens

@@ -6,6 +6,16 @@
 
 namespace trilens {
 
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+/// Pictures of many samples are begun once nothing was asked for so long: while a hand moves they would only
+/// be thrown away, and hold up the next picture meanwhile.
+constexpr std::chrono::milliseconds kRest(120);
+
+}  // namespace
+
 DrawingThread::DrawingThread() : thread_([this] { run(); }) {}
 
 DrawingThread::~DrawingThread() {
@@ -23,7 +33,7 @@ std::uint64_t DrawingThread::ask(const Session& session) {
     if (asked_)
         ++times_.dropped;
     else
-        asked_at_ = std::chrono::steady_clock::now();
+        asked_at_ = Clock::now();
     asked_ = DrawOrder{++last_asked_, session.file, session.folder, session.now};
     if (last_shown_ == last_begun_) cancel_ = true;  // what is drawn now only makes it better
     changed_.notify_all();
@@ -90,8 +100,7 @@ void DrawingThread::publish(const std::string& failure) {
         const std::scoped_lock lock(mutex_);
         if (drawn->order == last_begun_ && last_shown_ != last_begun_) {
             last_shown_ = last_begun_;
-            times_.latencies.push_back(
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_asked_at_).count());
+            times_.latencies.push_back(std::chrono::duration<double>(Clock::now() - begun_asked_at_).count());
         }
         if (failure.empty() && drawn->error.empty() && drawn->order == last_begun_) ++times_.pictures;
         if (painter_.next() == DrawStage::kDone || !failure.empty()) last_done_ = last_begun_;
@@ -123,7 +132,10 @@ void DrawingThread::run() {
         bool visits = false;
         {
             std::unique_lock lock(mutex_);
-            changed_.wait(lock, [this] { return stops_ || asked_ || visit_ || last_done_ != last_begun_; });
+            const auto is_asked = [this] { return stops_ || asked_ || visit_; };
+            if (last_done_ != last_begun_ && painter_.next() >= DrawStage::kFine)
+                changed_.wait_until(lock, begun_asked_at_ + kRest, is_asked);
+            changed_.wait(lock, [&] { return is_asked() || last_done_ != last_begun_; });
             if (stops_) return;
             cancel_ = false;
             order.swap(asked_);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "view/birds_eye.h"
+#include "view/light_changes.h"
 
 namespace trilens {
 namespace {
@@ -16,41 +17,18 @@ constexpr double kLongSeconds = 0.06;
 constexpr int kBirdsEyeSamples = 2;  // 2 x 2
 constexpr int kFineSamples = 4, kFinestSamples = 8;
 
-/// What a fast reading of the scene (scene_at_frame) may change.
-bool is_light_part(const std::string& key) {
-    return key == "cameras" || key == "film" || key == "lights" || key == "render";
+/// Pixels along a coarse picture's pixel; at first as many, then as the time of the last one asks.
+constexpr int kMostCoarse = 16;
+constexpr int kLeastCoarsePixels = 8;  // along its shorter side
+
+int coarse_factor(int wanted, const Film& film) {
+    while (wanted > 1 && std::min(film.width, film.height) / wanted < kLeastCoarsePixels) wanted /= 2;
+    return wanted;
 }
 
-/// The changes that make `to` of `from`; none where more differs than light parts.
-std::optional<std::vector<SceneOverride>> light_changes(const Json& from, const Json& to) {
-    std::vector<SceneOverride> changes;
-    for (const Json* both : {&from, &to})
-        for (const auto& [key, value] : both->items()) {
-            const bool same = from.contains(key) && to.contains(key) && from.at(key) == to.at(key);
-            if (!same && !is_light_part(key)) return std::nullopt;
-            if (same || both == &from) {
-                if (!same && !to.contains(key)) changes.push_back({"/" + key, "", true});
-                continue;
-            }
-            if (key != "cameras" || !from.contains(key) || from.at(key).size() != value.size()) {
-                if (key == "cameras") return std::nullopt;
-                changes.push_back({"/" + key, value.dump(), false});
-                continue;
-            }
-            for (std::size_t i = 0; i < value.size(); ++i)
-                if (value[i] != from.at(key)[i])
-                    changes.push_back({"/cameras/" + std::to_string(i), value[i].dump(), false});
-        }
-    return changes;
-}
-
-/// The first camera of several picture sizes: coarse pictures are this much smaller, so that they take about
-/// kLongSeconds.
-int coarse_factor(double full_seconds, const Film& film) {
-    int factor = 2;
-    while (factor < 16 && full_seconds > kLongSeconds * factor * factor) factor *= 2;
-    while (factor > 1 && std::min(film.width, film.height) / factor < 8) factor /= 2;
-    return factor;
+int next_coarse_factor(int factor, double seconds) {
+    if (seconds > 2 * kLongSeconds) return std::min(2 * factor, kMostCoarse);
+    return 4 * seconds < 1.5 * kLongSeconds ? std::max(factor / 2, 2) : factor;
 }
 
 }  // namespace
@@ -65,8 +43,9 @@ struct Painter::Work {
     std::optional<Renderer> renderer, birds_eye;
     bool renderer_is_current = false;  // its scene is the state's, but for the film
     Film film_now;                     // of the renderer
-    double full_seconds = 16;          // that all pixels take, as far as is known; at first much
-    Image projected, truth;            // of the state, at the stage drawn last
+    double full_seconds = 16;          // that all pixels took last; at first much
+    int coarse = kMostCoarse;
+    Image projected, truth;  // of the state, at the stage drawn last
     std::vector<LayerComparison> layers;
     std::vector<std::string> scene_warnings;
     WatchStage watcher;
@@ -137,22 +116,17 @@ struct Painter::Work {
                 drawn.warnings.push_back(message);
         };
         Picture picture = renderer->draw(request(engine), progress, warn);
-        if (engine == settings().engine) {
-            drawn.statistics = picture.statistics;
-            drawn.draw_seconds = picture.prepare_seconds + picture.draw_seconds;
-        }
+        if (engine == settings().engine) drawn.statistics = picture.statistics;
         return std::move(picture.image);
     }
 
-    void draw_projected(int width, int height, int spp, const Progress& progress) {
+    /// The picture of the chosen engine; `engine`: the one that draws it.
+    void draw_projected(const Film& film, Engine engine, const Progress& progress) {
         const Stopwatch watch;
-        use_film(width, height, spp);
-        projected = draw(settings().engine, progress);
+        use_film(film.width, film.height, film.spp);
+        projected = draw(engine, progress);
         drawn.optics = renderer->optics();
-        const double seconds = watch.seconds();
-        // Fewer pixels tell what all would take, at most: what they have in common is counted too often.
-        if (spp == 1)
-            full_seconds = seconds * (1.0 * scene->film.width * scene->film.height) / (1.0 * width * height);
+        drawn.draw_seconds = watch.seconds();
         const bool has_truth = truth.width == projected.width && truth.height == projected.height;
         drawn.order = order.number;
         drawn.film_width = scene->film.width;
@@ -164,6 +138,25 @@ struct Painter::Work {
             overlays.facets || overlays.method
                 ? std::make_shared<Pixels>(overlay_pixels(projected, overlays.facets, overlays.method))
                 : nullptr;
+    }
+
+    Film with_samples(int spp) const {
+        Film film = scene->film;
+        film.spp = spp;
+        return film;
+    }
+
+    /// Where all pixels take long, fewer of them. A facet there holds few samples, or none: to follow the
+    /// rays of these takes less than to prepare it.
+    void draw_coarse(const Progress& progress) {
+        const int factor = coarse_factor(coarse, scene->film);
+        if (full_seconds <= kLongSeconds || factor == 1) return;
+        Film film = with_samples(1);
+        film.width = std::max(1, film.width / factor);
+        film.height = std::max(1, film.height / factor);
+        const bool is_exact = settings().engine == Engine::kExact;
+        draw_projected(film, is_exact ? Engine::kLimitTruth : settings().engine, progress);
+        coarse = next_coarse_factor(factor, drawn.draw_seconds);
     }
 
     /// One side of the wipe, from the pictures of now; `before` where the truth is not drawn yet.
@@ -209,12 +202,13 @@ struct Painter::Work {
 
     void draw_lines(const Progress& progress) {
         use_film(scene->film.width, scene->film.height, 1);
+        drawn.edges = nullptr;
         drawn.folds = nullptr;
         LineDrawing lines;
         const Overlays& overlays = settings().overlays;
         const bool facets = watcher && overlays.facets;
         facet_edges.clear();
-        if (overlays.folds || overlays.caustics || facets) {
+        if (overlays.edges || overlays.folds || overlays.caustics || facets) {
             LineChoice choice;
             choice.folds = overlays.folds;
             choice.caustics = overlays.caustics;
@@ -222,6 +216,8 @@ struct Painter::Work {
             lines = renderer->draw_lines(settings().frame, choice);
         }
         facet_edges = std::move(lines.facet_edges);
+        if (overlays.edges)
+            drawn.edges = std::make_shared<const std::vector<EdgeLine>>(std::move(lines.edge_lines));
         if (overlays.folds)
             drawn.folds = std::make_shared<const std::vector<FoldCurve>>(std::move(lines.fold_curves));
         const double reach = scene_reach(*base);
@@ -264,23 +260,21 @@ struct Painter::Work {
     }
 
     bool has_lines() const {
-        return settings().overlays.folds || settings().pixel || settings().place || settings().pick ||
-               settings().birds_eye.shown || drawn.folds || drawn.pixel_paths || drawn.place_images ||
-               drawn.birds_eye || (watcher && (settings().overlays.facets || !facet_edges.empty()));
+        return settings().overlays.edges || settings().overlays.folds || settings().pixel ||
+               settings().place || settings().pick || settings().birds_eye.shown || drawn.edges ||
+               drawn.folds || drawn.pixel_paths || drawn.place_images || drawn.birds_eye ||
+               (watcher && (settings().overlays.facets || !facet_edges.empty()));
     }
 
     void draw_stage(const Progress& progress) {
         const Film& film = scene->film;
         switch (next) {
-            case DrawStage::kCoarse: {
-                const int factor = coarse_factor(full_seconds, film);
-                if (full_seconds > kLongSeconds && factor > 1)
-                    draw_projected(std::max(1, film.width / factor), std::max(1, film.height / factor), 1,
-                                   progress);
+            case DrawStage::kCoarse:
+                draw_coarse(progress);
                 break;
-            }
             case DrawStage::kPixels:
-                draw_projected(film.width, film.height, 1, progress);
+                draw_projected(with_samples(1), settings().engine, progress);
+                full_seconds = drawn.draw_seconds;
                 break;
             case DrawStage::kLines:
                 if (has_lines()) draw_lines(progress);
@@ -292,7 +286,7 @@ struct Painter::Work {
             case DrawStage::kFinest: {
                 const int spp = next == DrawStage::kFine ? kFineSamples : kFinestSamples;
                 if (spp <= film.spp && next == DrawStage::kFine) break;
-                draw_projected(film.width, film.height, std::max(spp, film.spp), progress);
+                draw_projected(with_samples(std::max(spp, film.spp)), settings().engine, progress);
                 if (settings().compares()) draw_comparison(std::max(spp, film.spp), progress);
                 break;
             }

@@ -17,7 +17,8 @@
 
 namespace trilens {
 
-/// What is drawn of a state, in this order. kCoarse: fewer pixels, where all would take long. kPixels: one
+/// What is drawn of a state, in this order. kCoarse: fewer pixels, where all would take long; of the exact
+/// engine they are traced. kPixels: one
 /// sample in each. kLines: paths, images of places, folds, the bird's-eye view. kComparison: the truth and
 /// what is measured against it. kFine, kFinest: 4 x 4 and 8 x 8 samples.
 enum class DrawStage { kCoarse, kPixels, kLines, kComparison, kFine, kFinest, kDone };
@@ -63,6 +64,7 @@ struct Drawn {
     int film_width = 0, film_height = 0;
     std::shared_ptr<const Pixels> left, right, overlay;
     std::shared_ptr<const ShownBirdsEye> birds_eye;
+    std::shared_ptr<const std::vector<EdgeLine>> edges;
     std::shared_ptr<const std::vector<FoldCurve>> folds;
     std::shared_ptr<const std::vector<PathLine>> pixel_paths;
     std::shared_ptr<const PlaceImages> place_images;

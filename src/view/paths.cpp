@@ -90,6 +90,7 @@ std::vector<PathLine> pixel_paths(const Renderer& renderer, const PictureRequest
 PlaceImages place_images(const Renderer& renderer, const FrameParams& frame, const Vec3& place) {
     ProjectRequest request;
     request.frame = frame;
+    request.frame.facets = FacetUse::kAll;  // an image is in whatever facet it is
     const PointProjection found = renderer.project(std::span(&place, 1), request).at(0);
     const Scene& scene = renderer.scene();
     const Camera camera =

@@ -91,6 +91,8 @@ const std::map<std::string, TakeSetting>& setting_takers() {
          [](ViewSettings& to, const Json& v, const Json&) { to.frame.rays = chosen_in<CornerRays>(v); }},
         {"grid",
          [](ViewSettings& to, const Json& v, const Json&) { to.frame.grid = chosen_in<GridKind>(v); }},
+        {"facetUse",
+         [](ViewSettings& to, const Json& v, const Json&) { to.frame.facets = named_in<FacetUse>(v); }},
         {"maxError",
          [](ViewSettings& to, const Json& v, const Json&) {
              to.frame.max_error = v.is_null() ? std::nullopt : std::optional(number_in(v));
@@ -114,6 +116,7 @@ const std::map<std::string, TakeSetting>& setting_takers() {
          [](ViewSettings& to, const Json& v, const Json&) { to.wipe = std::clamp(number_in(v), 0.0, 1.0); }},
         {"scale", [](ViewSettings& to, const Json& v, const Json&) { to.difference_scale = number_in(v); }},
         {"facets", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.facets = flag_in(v); }},
+        {"edges", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.edges = flag_in(v); }},
         {"folds", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.folds = flag_in(v); }},
         {"method", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.method = flag_in(v); }},
         {"caustics", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.caustics = flag_in(v); }},
@@ -320,7 +323,7 @@ void Script::run_random(Viewer& viewer) {
             settings.place = viewer.reach() * Vec3(share(), share(), share());
             break;
         case 9:
-            settings.overlays = {next(2) == 0, next(2) == 0, next(2) == 0, next(2) == 0};
+            settings.overlays = {next(2) == 0, next(2) == 0, next(2) == 0, next(2) == 0, next(2) == 0};
             break;
         case 10:
             settings.birds_eye.shown = !settings.birds_eye.shown;

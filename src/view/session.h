@@ -34,6 +34,7 @@ struct EnumNames<ShownPicture> {
 /// Lines and tints over the picture.
 struct Overlays {
     bool facets = false;    // outlines of the facets that pixels were projected through
+    bool edges = false;     // of the objects, as the camera and the optics show them
     bool folds = false;     // curves where what the optics show turns over
     bool method = false;    // a tint: projected, part of a divided facet, traced
     bool caustics = false;  // in the bird\'s-eye view: where neighbouring rays behind the optics meet
@@ -61,7 +62,7 @@ struct PlacePick {
 
 /// All that is chosen beside the scene.
 struct ViewSettings {
-    FrameParams frame;
+    FrameParams frame{.facets = FacetUse::kWorthwhile};  // as pictures are drawn everywhere
     Engine engine = Engine::kExact;
     ToneMapping tone;
     std::string layer;  // empty: the beauty; else "direct", "reflect", "refract"

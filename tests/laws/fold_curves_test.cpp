@@ -182,3 +182,91 @@ TEST_CASE("flat and convex mirrors have no folds, and none are drawn that nobody
     CHECK(plain.folds == 0);
     CHECK(plain.svg.find("class=\"fold\"") == std::string::npos);
 }
+
+namespace {
+
+/// Dense points of the conics in an SVG's data-conic attributes, one list for each curve.
+std::vector<std::vector<Vec2>> conics_in(const std::string& svg) {
+    std::vector<std::vector<Vec2>> curves;
+    const std::string name = "data-conic=\"";
+    for (std::size_t at = svg.find(name); at != std::string::npos; at = svg.find(name, at + 1)) {
+        const std::size_t first = at + name.size();
+        std::string text = svg.substr(first, svg.find('"', first) - first);
+        std::replace(text.begin(), text.end(), ';', ' ');
+        std::istringstream in(text);
+        std::vector<Vec2> points;
+        Vec2 a, b, c;
+        double w = 0;
+        while (in >> a.x >> a.y >> b.x >> b.y >> c.x >> c.y >> w)
+            for (int i = 0; i <= 40; ++i) {
+                const double u = i / 40.0, v = 1 - u;
+                const double of_a = v * v, of_b = 2 * u * v * w, of_c = u * u;
+                points.push_back((of_a * a + of_b * b + of_c * c) / (of_a + of_b + of_c));
+            }
+        curves.push_back(points);
+    }
+    return curves;
+}
+
+/// How far a point is from the border of the square |x|, |y| <= half.
+double off_border(const Vec3& p, double half) {
+    return std::fabs(std::max(std::fabs(p.x), std::fabs(p.y)) - half);
+}
+
+}  // namespace
+
+TEST_CASE("edges as polygonal lines follow the exact conics, and what rays of theirs meet lies on the edge",
+          "[laws][oracle][law]") {
+    // A square behind a mirror ball, and a larger one behind the eye, which the ball shows.
+    Scene scene = before_wall(Primitive{}, false, 6, {0, 0.2, 4});
+    for (Vec3& p : scene.meshes[1].object.points) p = {p.x / 15, p.y / 15, p.z};
+    Mesh behind = scene.meshes[1];
+    behind.name = "behind";
+    for (Vec3& p : behind.object.points) p = {0.3 * p.x, 0.3 * p.y, -1.4};
+    scene.meshes.push_back(behind);
+    const Renderer renderer(scene);
+    const LineDrawing drawing = renderer.draw_lines({});
+    const auto conics = conics_in(drawing.svg);
+    REQUIRE(drawing.edge_lines.size() == drawing.curves);
+    REQUIRE(conics.size() == drawing.curves);
+
+    // The SVG has them by object within each layer; here by place.
+    std::vector<std::vector<Vec2>> lines;
+    for (const EdgeLine& edge : drawing.edge_lines) lines.push_back(edge.points);
+    double worst = 0;
+    for (const std::vector<Vec2>& conic : conics)
+        for (const Vec2& p : conic) worst = std::max(worst, distance(p, lines));
+    CHECK(worst <= kEdgeTolerance);
+    worst = 0;
+    for (const std::vector<Vec2>& line : lines)
+        for (const Vec2& p : line) worst = std::max(worst, distance(p, conics));
+    CHECK(worst <= 0.02);  // between dense points
+
+    const Camera camera = make_camera(scene.cameras[0], {80, 60});
+    std::size_t direct = 0, mirrored = 0;
+    std::vector<double> off;
+    for (const EdgeLine& edge : drawing.edge_lines) {
+        if (edge.path == "direct" && edge.object == 2) {
+            CHECK(edge.optic == kNone);
+            for (const Vec2& p : edge.points) {
+                const Ray ray = *exact_ray(camera, p);
+                const Vec3 at = ray.origin + (-1.4 - ray.origin.z) / ray.direction.z * ray.direction;
+                CHECK(off_border(at, 1.2) < 1e-6);
+                ++direct;
+            }
+        } else if (edge.path == "reflect" && edge.object == 1) {
+            CHECK(edge.optic == 0);
+            const ShotRays shots = renderer.shoot(edge.points);
+            for (const ShotRay& shot : shots.rays)
+                if (shot.object == 1) off.push_back(off_border(shot.position, 4));
+            mirrored += edge.points.size();
+        }
+    }
+    CHECK(direct >= 8);
+    REQUIRE(mirrored > 40);
+    // Half of them pass by on the other side of the border.
+    REQUIRE(off.size() > mirrored / 5);
+    std::sort(off.begin(), off.end());
+    CHECK(off[off.size() / 2] < 0.01);
+    CHECK(off.back() < 0.1);
+}

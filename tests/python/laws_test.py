@@ -123,6 +123,10 @@ def test_facets_on_the_screen_and_folds_are_the_commands(command, tmp_path):
     lines = renderer.draw_lines(folds=True)
     assert code == 0 and lines.folds == answer["folds"] > 0
     assert lines.svg == (tmp_path / "theirs.svg").read_text() and 'class="fold"' in lines.svg
+    assert len(lines.edge_lines) == lines.curves == answer["curves"] > 0
+    assert {line["path"] for line in lines.edge_lines} == {"direct", "reflect"}
+    for line in lines.edge_lines:
+        assert (line["optic"] is None) == (line["path"] == "direct") and line["points"].shape[1:] == (2,) and len(line["points"]) > 1
 
 
 @pytest.mark.parametrize("options", [{}, {"layer": "reflect"}, {"mask_object": 0, "fail": 0.5, "hardfail": 9.0, "warn": 9.0}])

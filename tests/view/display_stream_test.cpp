@@ -5,6 +5,7 @@
 #include <trilens/version.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -30,6 +31,39 @@ std::vector<int> operations_in(const std::vector<std::uint8_t>& bytes) {
         at += length;
     }
     return operations;
+}
+
+/// The lines of the last message of lines, read as tev does: each begun, moved to, led on, stroked.
+std::vector<std::vector<std::array<float, 2>>> last_lines(const std::vector<std::uint8_t>& bytes) {
+    std::size_t last = bytes.size();
+    for (std::size_t at = 0, length = 0; at + 5 <= bytes.size(); at += length) {
+        length = 0;
+        std::memcpy(&length, &bytes[at], 4);
+        if (bytes[at + 4] == 8) last = at;
+    }
+    REQUIRE(last < bytes.size());
+    std::size_t at = last + 6;
+    while (bytes[at++] != 0) {
+    }
+    const auto number = [&](auto value) {
+        REQUIRE(at + sizeof value <= bytes.size());
+        std::memcpy(&value, &bytes[at], sizeof value);
+        at += sizeof value;
+        return value;
+    };
+    CHECK(number(char{}) == 0);  // instead of those before
+    std::vector<std::vector<std::array<float, 2>>> lines;
+    for (int left = number(std::int32_t{}); left > 0; --left) {
+        const int command = number(char{});
+        if (command == 4) at += 16;
+        if (command == 6) lines.emplace_back();
+        if (command != 10 && command != 11) continue;
+        REQUIRE(!lines.empty());
+        CHECK((command == 10) == lines.back().empty());
+        const float x = number(float{}), y = number(float{});
+        lines.back().push_back({x, y});
+    }
+    return lines;
 }
 
 SceneRequest ball_request(const std::string& folder) {
@@ -93,6 +127,49 @@ TEST_CASE("a display server gets the viewer's last picture to the bit, and facet
     std::vector<std::uint8_t> red(4 * drawn_red.size());
     std::memcpy(red.data(), drawn_red.data(), red.size());
     CHECK(std::search(bytes.begin(), bytes.end(), red.begin(), red.end()) != bytes.end());
+}
+
+TEST_CASE("edges, folds and the images of a place arrive at a display server as the lines that are drawn",
+          "[view][display]") {
+    const SceneRequest request = ball_request(trilens_test::scratch_dir("view_display_lines"));
+    SmallServer server;
+    std::vector<DisplayLine> drawn;
+    {
+        Session session = open_session(request);
+        session.now.settings.overlays.edges = true;
+        session.now.settings.overlays.folds = true;
+        session.now.settings.pick = PlacePick{false, Vec2(32.5, 24.5)};
+        DisplayStream stream(server.address(), "ball");
+        Painter painter;
+        painter.watch([&](const StagePictures& stage, std::vector<std::string>& warnings) {
+            stream.send(stage, warnings);
+            drawn = stage_lines(stage);
+        });
+        painter.begin({1, session.file, session.folder, session.now});
+        while (painter.draw_next()) {
+        }
+        CHECK(painter.drawn().error == "");
+        // The library's own, and the two arms of each image's cross.
+        LineChoice folds;
+        folds.folds = true;
+        const LineDrawing lines = Renderer(load_scene(request)).draw_lines({}, folds);
+        REQUIRE(lines.edge_lines.size() > 10);
+        REQUIRE(painter.drawn().place_images);
+        const std::size_t images = painter.drawn().place_images->images.size();
+        REQUIRE(images > 0);
+        REQUIRE(drawn.size() == lines.edge_lines.size() + lines.fold_curves.size() + 2 * images);
+        for (std::size_t i = 0; i < lines.edge_lines.size(); ++i)
+            CHECK(drawn[i].points == lines.edge_lines[i].points);
+    }
+    const std::vector<std::vector<std::array<float, 2>>> sent = last_lines(server.received());
+    REQUIRE(sent.size() == drawn.size());
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+        REQUIRE(sent[i].size() == drawn[i].points.size());
+        for (std::size_t k = 0; k < sent[i].size(); ++k) {
+            CHECK(sent[i][k][0] == static_cast<float>(drawn[i].points[k].x));
+            CHECK(sent[i][k][1] == static_cast<float>(drawn[i].points[k].y));
+        }
+    }
 }
 
 TEST_CASE("a display server that goes away in the middle of a tile is a warning, and pictures go on",

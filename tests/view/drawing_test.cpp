@@ -1,5 +1,6 @@
 // The viewer's drawing: stages, whole pictures, interruption, errors beside the last good picture, scripts.
 #include <trilens/error.h>
+#include <trilens/utilities.h>
 #include <trilens/version.h>
 
 #include <cmath>
@@ -25,6 +26,13 @@ bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
+/// What the command draws.
+PictureRequest plain_request() {
+    PictureRequest request;
+    request.frame.facets = FacetUse::kWorthwhile;
+    return request;
+}
+
 SceneRequest small_request(const std::string& folder) {
     SceneRequest request{small_scene_file(folder), {}, 0};
     request.overrides = {{"/film/width", "64"}, {"/film/height", "48"}};
@@ -45,14 +53,14 @@ TEST_CASE("the last stage of all pixels is the renderer's own picture", "[view]"
     CHECK(stages.size() == 5);
     CHECK(painter.drawn().stage == DrawStage::kDone);
     const Renderer renderer(load_scene(request));
-    const Image image = renderer.draw({}).image;
+    const Image image = renderer.draw(plain_request()).image;
     const Image mine = painter.picture();
     for (const char* channel : {"R", "G", "B"})
         CHECK(mine.find(channel)->floats() == image.find(channel)->floats());
     // What is shown last has 8 x 8 samples, tone mapped as a PNG is.
     SceneRequest fine = request;
     fine.overrides.push_back({"/film/spp", "8"});
-    const Pixels expected = tone_pixels(Renderer(load_scene(fine)).draw({}).image, "", {});
+    const Pixels expected = tone_pixels(Renderer(load_scene(fine)).draw(plain_request()).image, "", {});
     REQUIRE(painter.drawn().left);
     CHECK(painter.drawn().left->rgba == expected.rgba);
 }
@@ -184,6 +192,43 @@ TEST_CASE("a mark off the film is told of, and the picture still gets all its sa
     CHECK_FALSE(painter.drawn().pixel_paths);
 }
 
+TEST_CASE("a coarse picture is the trace of fewer pixels, and all pixels follow it", "[view]") {
+    const std::string folder = trilens_test::scratch_dir("view_coarse");
+    SceneRequest request = small_request(folder);
+    request.overrides = {{"/film/width", "256"}, {"/film/height", "192"}};
+    Session session = open_session(request);
+    Painter painter;
+    painter.begin({1, session.file, session.folder, session.now});
+    REQUIRE(painter.draw_next());
+    CHECK(painter.drawn().stage == DrawStage::kCoarse);
+    CHECK(painter.drawn().film_width == 256);
+    SceneRequest few = request;
+    few.overrides = {{"/film/width", "16"}, {"/film/height", "12"}, {"/film/spp", "1"}};
+    PictureRequest truth;
+    truth.engine = Engine::kLimitTruth;
+    const auto coarse = painter.drawn().left;
+    REQUIRE(coarse);
+    CHECK(coarse->rgba == tone_pixels(Renderer(load_scene(few)).draw(truth).image, "", {}).rgba);
+    REQUIRE(painter.draw_next());
+    CHECK(painter.drawn().left->width == 256);
+}
+
+TEST_CASE("while states change no picture of many samples is begun", "[view]") {
+    const std::string folder = trilens_test::scratch_dir("view_rest");
+    Viewer viewer(small_request(folder));
+    REQUIRE(viewer.drawing().wait_done(60));
+    for (int turn = 0; turn < 30; ++turn) {
+        const Stopwatch watch;
+        viewer.move({CameraMove::Kind::kOrbit, {3, 0, 0}});
+        REQUIRE(viewer.drawing().wait_shown(60));
+        const DrawStage stage = viewer.drawn()->stage;
+        // A busy machine may take so long that the hand was at rest.
+        if (watch.seconds() < 0.1) CHECK(stage < DrawStage::kFine);
+    }
+    REQUIRE(viewer.drawing().wait_done(60));
+    CHECK(viewer.drawn()->stage == DrawStage::kDone);
+}
+
 TEST_CASE("the comparison's numbers are those of the library, and its pictures are there", "[view]") {
     const std::string folder = trilens_test::scratch_dir("view_comparison");
     SceneRequest request = small_request(folder);
@@ -193,7 +238,7 @@ TEST_CASE("the comparison's numbers are those of the library, and its pictures a
     const Renderer renderer(load_scene(request));
     PictureRequest truth;
     truth.engine = Engine::kLimitTruth;
-    const Image of_truth = renderer.draw(truth).image, mine = renderer.draw({}).image;
+    const Image of_truth = renderer.draw(truth).image, mine = renderer.draw(plain_request()).image;
     const Metrics expected = compare(of_truth, mine).metrics;
     for (const ShownPicture right : {ShownPicture::kTruth, ShownPicture::kDifference,
                                      ShownPicture::kDisplacement, ShownPicture::kFlip}) {

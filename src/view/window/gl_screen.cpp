@@ -158,7 +158,8 @@ void GlScreen::show(ImDrawData& data, Pixels* read) {
     int width = 0, height = 0;
     glfwGetFramebufferSize(parts_->window, &width, &height);
     glViewport(0, 0, width, height);
-    glClearColor(0.1f, 0.1f, 0.1f, 1);
+    constexpr float kGrey = kScreenGrey / 255.0f;
+    glClearColor(kGrey, kGrey, kGrey, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(&data);
     if (read) *read = drawn_pixels(width, height);

@@ -77,8 +77,9 @@ void build_interface(Viewer& viewer, InterfaceState& state, TextureStore& textur
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize(size);
     ImGui::Begin("trilens", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+                 ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoScrollWithMouse);
     const ImVec2 inside = ImGui::GetContentRegionAvail();
     const float words = 2.4f * ImGui::GetTextLineHeightWithSpacing();
     const float left = std::max(40.0f, inside.x - kPanelWidth - ImGui::GetStyle().ItemSpacing.x);

@@ -44,6 +44,10 @@ struct InterfaceState {
     double frames_per_second = 0;  // of the window
 };
 
+/// What a screen is cleared with before a frame is drawn on it, of each colour: the interface has no
+/// background of its own, which would be drawn over all pixels once more.
+inline constexpr int kScreenGrey = 16;  // of 255
+
 /// Builds one frame of the interface between ImGui::NewFrame and ImGui::Render, and does what the user asks.
 void build_interface(Viewer& viewer, InterfaceState& state, TextureStore& textures);
 

@@ -125,7 +125,7 @@ Pixels rasterize_interface(const ImDrawData& data, const MemoryTextures& texture
     Pixels screen{static_cast<int>(data.DisplaySize.x), static_cast<int>(data.DisplaySize.y), {}};
     screen.rgba.assign(static_cast<std::size_t>(std::max(screen.width, 0)) *
                            static_cast<std::size_t>(std::max(screen.height, 0)) * 4,
-                       30);
+                       kScreenGrey);
     for (int i = 0; i < data.CmdListsCount; ++i) {
         const ImDrawList& list = *data.CmdLists[i];
         for (const ImDrawCmd& command : list.CmdBuffer) {

@@ -23,13 +23,15 @@ void draw_part(const PicturePlace& place, std::uintptr_t texture, float from, fl
                                          {to, 1});
 }
 
-void draw_folds(const PicturePlace& place, const std::vector<FoldCurve>& folds) {
+/// Edges or folds.
+template <typename Line>
+void draw_lines(const PicturePlace& place, const std::vector<Line>& lines, ImU32 colour, float width) {
     std::vector<ImVec2> points;
-    for (const FoldCurve& fold : folds) {
+    for (const Line& line : lines) {
         points.clear();
-        for (const Vec2& at : fold.points) points.push_back(screen_of(place, at));
-        ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()),
-                                                IM_COL32(255, 90, 220, 255), 0, 2);
+        for (const Vec2& at : line.points) points.push_back(screen_of(place, at));
+        ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0,
+                                                width);
     }
 }
 
@@ -147,7 +149,8 @@ void picture_area(Viewer& viewer, InterfaceState& state, TextureStore& textures,
     if (drawn->right) draw_part(place, textures.texture(1, drawn->right), wipe, 1);
     if (drawn->overlay) draw_part(place, textures.texture(2, drawn->overlay), 0, 1);
     ImGui::PushClipRect({place.x, place.y}, {place.x + place.width, place.y + place.height}, true);
-    if (drawn->folds) draw_folds(place, *drawn->folds);
+    if (drawn->edges) draw_lines(place, *drawn->edges, IM_COL32(50, 205, 255, 255), 1.5f);
+    if (drawn->folds) draw_lines(place, *drawn->folds, IM_COL32(255, 90, 220, 255), 2);
     draw_marks(place, *drawn, settings);
     if (drawn->comparison && settings.shows(ShownPicture::kDisplacement))
         draw_scale(place, drawn->comparison->displacement_end, "px");

@@ -54,7 +54,10 @@ bool slide(const char* label, double& value, double least, double most, const ch
 void state_words(const Viewer& viewer, const InterfaceState& state) {
     const auto drawn = viewer.drawn();
     if (!drawn) return ImGui::TextDisabled("drawing the first picture ...");
-    ImGui::Text("%d x %d   %s   %.1f ms", drawn->film_width, drawn->film_height, name_of(drawn->stage),
+    std::string stage = name_of(drawn->stage);
+    if (drawn->stage == DrawStage::kCoarse && drawn->left)
+        stage = fmt::format("coarse: {} x {}", drawn->left->width, drawn->left->height);
+    ImGui::Text("%d x %d   %s   %.1f ms", drawn->film_width, drawn->film_height, stage.c_str(),
                 1000 * drawn->draw_seconds);
     if (state.frames_per_second > 0)
         ImGui::SameLine(), ImGui::TextDisabled("  %.0f fps", state.frames_per_second);
@@ -94,6 +97,7 @@ void projection(Viewer& viewer) {
     if (choose("engine", next.engine)) viewer.change("engine", next);
     if (choose("rays", next.frame.rays, "scene's")) viewer.change("rays", next);
     if (choose("grid", next.frame.grid, "scene's")) viewer.change("grid", next);
+    if (choose("facets' use", next.frame.facets)) viewer.change("use", next);
     double error = next.frame.max_error.value_or(0);
     if (slide("max error (px)", error, 0, 8, error > 0 ? "%.2f" : "scene's")) {
         next.frame.max_error = error > 0 ? std::optional(error) : std::nullopt;
@@ -139,6 +143,8 @@ void overlays(Viewer& viewer) {
     if (!ImGui::CollapsingHeader("overlays", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ViewSettings next = viewer.settings();
     bool changed = ImGui::Checkbox("facets", &next.overlays.facets);
+    ImGui::SameLine();
+    changed = ImGui::Checkbox("edges", &next.overlays.edges) || changed;
     ImGui::SameLine();
     changed = ImGui::Checkbox("folds", &next.overlays.folds) || changed;
     ImGui::SameLine();
