@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "support/test.h"
 #include "view/script.h"
@@ -197,6 +198,8 @@ TEST_CASE("a coarse picture is the trace of fewer pixels, and all pixels follow 
     SceneRequest request = small_request(folder);
     request.overrides = {{"/film/width", "256"}, {"/film/height", "192"}};
     Session session = open_session(request);
+    session.now.settings.frame.resolution = 2;  // facets that show something else
+    session.now.settings.frame.facets = FacetUse::kAll;
     Painter painter;
     painter.begin({1, session.file, session.folder, session.now});
     REQUIRE(painter.draw_next());
@@ -221,6 +224,8 @@ TEST_CASE("while states change no picture of many samples is begun", "[view]") {
         const Stopwatch watch;
         viewer.move({CameraMove::Kind::kOrbit, {3, 0, 0}});
         REQUIRE(viewer.drawing().wait_shown(60));
+        // Long enough for 4 x 4 samples of so small a film.
+        std::this_thread::sleep_for(std::chrono::milliseconds(70));
         const DrawStage stage = viewer.drawn()->stage;
         // A busy machine may take so long that the hand was at rest.
         if (watch.seconds() < 0.1) CHECK(stage < DrawStage::kFine);
