@@ -171,7 +171,9 @@ void bind_image(py::module_& module) {
             "them\ncosts: object (id), surveyed_facets (probed first), least_samples (facets with fewer "
             "are traced),\ncost, saved (in paths of samples: of probing a facet, and what each sample then "
             "saves); "
-            "predicted_error: pixels, the most that was left; outline_pixels: predicted, "
+            "predicted_error: pixels, the most that was left; certified_pixels: whose displacement is "
+            "proven,\n"
+            "certified_error: the most of these bounds; outline_pixels: predicted, "
             "those between the outlines of optics and of their facets; deep_pixels: that lack light for "
             "maxDepth;\nfragment_pixels (shaded once or a few times for all their samples), fragments (of "
             "these pixels),\nfragments_per_pixel, rays_by_sample (shaded at each sample), "
@@ -245,7 +247,8 @@ void bind_image(py::module_& module) {
         "those layers (unit direction and origin of the last ray, world frame).\n"
         "position: directID.object, directID.primitive, directP.X, directP.Y, directP.Z, directP.length "
         "(what the\n"
-        "camera sees itself).");
+        "camera sees itself).\n"
+        "bound: by how many pixels what a mirror shows is displaced at most, as is proven (render's certify).");
 }
 
 }  // namespace trilens::python

@@ -39,6 +39,7 @@ struct FacetArguments {
     std::optional<std::string> grid;
     std::optional<std::string> seen_optics = {};
     std::optional<std::string> facets = {};
+    bool certify = false;
 
     FrameParams of(FrameParams frame) const {
         if (grid) frame.grid = require_named<GridKind>("grid", *grid);
@@ -49,6 +50,7 @@ struct FacetArguments {
         }
         if (facets) frame.facets = require_named<FacetUse>("facets", *facets);
         frame.max_error = max_error;
+        frame.certify = certify;
         return frame;
     }
 };
@@ -152,6 +154,8 @@ HeldImage draw(const Renderer& renderer, PictureRequest request, const Job& job,
     statistics["traced_pixels"] = picture.statistics.traced_pixels;
     statistics["layered_pixels"] = picture.statistics.layered_pixels;
     statistics["projected_facets"] = picture.statistics.projected_facets;
+    statistics["certified_pixels"] = picture.statistics.certified_pixels;
+    statistics["certified_error"] = picture.statistics.certified_error;
     statistics["predicted_error"] = picture.statistics.predicted_error;
     py::list probes;
     for (const OpticProbes& one : picture.statistics.probes) {
@@ -185,12 +189,12 @@ void bind_pictures(RendererClass& renderer) {
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
            const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
-           const std::string& shading, double exposure, const std::string& tone, double white,
+           bool certify, const std::string& shading, double exposure, const std::string& tone, double white,
            bool filter_shown, const File& file, const std::optional<std::string>& display_server,
            const py::object& progress, const py::object& warn) {
             PythonCall call(progress, warn);
             return draw(self,
-                        {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
+                        {FacetArguments{rays, max_error, grid, seen_optics, facets, certify}.of(
                              frame_params(self, resolution, camera)),
                          projecting_engine(engine, {curves, clip, pieces, tolerance}),
                          layer_request(layers, window, shading)},
@@ -202,10 +206,10 @@ void bind_pictures(RendererClass& renderer) {
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
         py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(),
-        py::arg("shading") = "fragment", py::arg("exposure") = 0.0, py::arg("tone") = "none",
-        py::arg("white") = ToneMapping().white, py::arg("filter_shown") = false, py::arg("file") = py::none(),
-        py::arg("display_server") = py::none(), py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("certify") = false, py::arg("shading") = "fragment", py::arg("exposure") = 0.0,
+        py::arg("tone") = "none", py::arg("white") = ToneMapping().white, py::arg("filter_shown") = false,
+        py::arg("file") = py::none(), py::arg("display_server") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -213,7 +217,7 @@ void bind_pictures(RendererClass& renderer) {
         "approximations).\n"
         "layers: to keep beside R G B A, of layer_names(); None: all but \"path\", \"stat\", "
         "\"magnification\",\n"
-        "\"position\" and \"ray\".\n"
+        "\"position\", \"ray\" and \"bound\".\n"
         "window: (x0, y0, x1, y1) of the film in pixels, x1 and y1 outside; None: all of it.\n"
         "curves, clip, pieces, tolerance: of the classic engine: \"arcs\", \"slices\", \"tessellate\" or\n"
         "\"straight\"; \"scene\", \"screen\" or \"none\"; pieces 1..1024; arcs keep within tolerance "
@@ -228,6 +232,9 @@ void bind_pictures(RendererClass& renderer) {
         "None: as the scene says.\n"
         "facets: \"worthwhile\" (those that it takes longer to probe than to follow the rays of their "
         "samples\nare traced) or \"all\" (none is for that); None: worthwhile.\n"
+        "certify: it is proven at each pixel's middle that what a mirror shows is off by no more than "
+        "max_error, "
+        "which\nis above 0 (layer \"bound\"); what is not proven is traced.\n"
         "shading: where pixels have several samples: \"fragment\" (once for those that see one triangle by "
         "one "
         "way,\nthe classic engine each) or \"sample\".\n"

@@ -258,6 +258,7 @@ class Renderer:
         grid: Optional[str] = None,
         seen_optics: Optional[str] = None,
         facets: Optional[str] = None,
+        certify: bool = False,
         shading: str = "fragment",
         exposure: float = 0.0,
         tone: str = "none",

@@ -110,6 +110,7 @@ struct RenderOptions {
     std::string rays;       // empty: each optic's own
     std::string facets;     // empty: those that are worthwhile
     double max_error = -1;  // < 0: as the scene says
+    bool certify = false;
     std::string grid;       // empty: as the scene says
     double exposure = 0;    // stops
     std::string tone = "none";

@@ -94,7 +94,13 @@ std::vector<Option> facet_options(RenderOptions& options) {
                  "predicted, and trace where that does not help; 0: only those that are off by more than "
                  "(32 / n)^2 pixels of a film 480 high, and by one",
          .value = "PX",
-         .range = {0, 1000}}};
+         .range = {0, 1000}},
+        {.names = "--certify",
+         .target = &options.certify,
+         .help =
+             "prove at each pixel's middle that what a mirror shows is off by no more than --max-error "
+             "(layer "
+             "bound), and trace what is not proven: other optics than mirrors, and all further reflections"}};
 }
 
 std::vector<Option> engine_options(RenderOptions& options) {
@@ -172,6 +178,7 @@ PictureRequest picture_request(const RenderOptions& options, const EngineChoice&
     request.frame.grid = find_named<GridKind>(options.grid);
     request.frame.facets = find_named<FacetUse>(options.facets).value_or(FacetUse::kWorthwhile);
     if (options.max_error >= 0) request.frame.max_error = options.max_error;
+    request.frame.certify = options.certify;
     return request;
 }
 

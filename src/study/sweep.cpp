@@ -149,7 +149,8 @@ void add(const LayerRequest& window, Digest& digest) {
 }
 
 void add(const FrameParams& frame, Digest& digest) {
-    [[maybe_unused]] const auto& [camera, resolution, grid, rays, max_error, layered, facets] = frame;
+    [[maybe_unused]] const auto& [camera, resolution, grid, rays, max_error, layered, facets, certify] =
+        frame;
     const auto add_own = [&](const auto& own) {
         digest.add(own.has_value());
         if (own) digest.add(*own);
@@ -160,6 +161,7 @@ void add(const FrameParams& frame, Digest& digest) {
     add_own(max_error);
     add_own(layered);
     if (facets != FacetUse::kAll) digest.add(facets);  // keys of older sweeps stay
+    if (certify) digest.add(certify);
 }
 
 void add(const EngineChoice& choice, Digest& digest) {

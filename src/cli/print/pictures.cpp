@@ -46,6 +46,8 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
             {"probes", probes_of(renderer, picture.statistics)},
             {"projected_facets", picture.statistics.projected_facets},
             {"predicted_error", picture.statistics.predicted_error},
+            {"certified_pixels", picture.statistics.certified_pixels},
+            {"certified_error", picture.statistics.certified_error},
             {"outline_pixels", picture.statistics.outline_pixels},
             {"fragment_pixels", picture.statistics.fragment_pixels},
             {"fragments", picture.statistics.fragments},

@@ -1,3 +1,4 @@
+#include "render/engines/certify_samples.h"
 #include "render/engines/engine.h"
 
 #include <algorithm>
@@ -86,8 +87,9 @@ class FacetViewer : public Viewer {
     std::optional<NestedStage> stage_;
 
     // What views work out, and later ones find.
-    std::vector<std::unique_ptr<NestedOptics>> nested_;  // per optic; null: it has none
-    std::vector<PathBuilder> paths_;                     // per optic
+    std::vector<std::unique_ptr<NestedOptics>> nested_;         // per optic; null: it has none
+    std::vector<PathBuilder> paths_;                            // per optic
+    std::vector<std::unique_ptr<SampleCertifier>> certifiers_;  // per optic, where proofs are asked for
 };
 
 /// As comes_before has it.
@@ -274,11 +276,15 @@ void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
     std::vector<PathEnds> ends;
     ends.reserve(frame_.optics.size());
     std::vector<Id> traced;
-    for (std::size_t i = 0; i < frame_.optics.size(); ++i)
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i) {
         ends.push_back(draw_optic_paths(
             {world_, static_cast<Id>(i), draw_paths_, draw_volumes_ ? &draw_volumes_ : nullptr,
              frame_.optics[i], nested_[i].get(), grid, part_in(grid, windows_[i])},
             paths_[i], views, traced));
+        if (certifiers_.empty()) continue;
+        certify_samples({*certifiers_[i], frame_.optics[i].facets->grid(), grid, frame_.max_error}, views,
+                        ends.back(), traced);
+    }
     trace_each(traced, grid, views, ends);
     if (draw_volumes_) view_volumes(owned, grid, views);
     collect_ends(std::move(ends), views);
@@ -293,6 +299,8 @@ void FacetViewer::make_paths(const EngineChoice& engine) {
                                  : make_approximate_paths(world_, frame_, i, engine.engine));
     }
     const bool has_limit = frame_.max_error > 0 && follows;
+    for (std::size_t i = 0; frame_.certify && follows && i < frame_.optics.size(); ++i)
+        certifiers_.push_back(std::make_unique<SampleCertifier>(world_, frame_, i));
     rims_ = make_rims(world_, frame_, has_limit ? frame_.max_error : kAnyError);
 }
 

@@ -89,6 +89,9 @@ Frame make_frame(const World& world, CameraRays camera, const FrameParams& param
     frame.camera_media = camera_media_of(world, frame.camera);
     frame.max_error = params.max_error.value_or(world.scene.render.max_error);
     frame.facets = params.facets;
+    frame.certify = params.certify;
+    if (frame.certify && !(frame.max_error > 0))
+        throw UsageError("what is to be proven is an error of more than 0 pixels: say which (max-error)");
     check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
         frame.optics.push_back(frame_optic(world, i, frame, params));

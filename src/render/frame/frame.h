@@ -91,6 +91,7 @@ struct Frame {
     std::vector<FramedOptic> optics;  // as World::optics
     double max_error = 0;             // as RenderSettings, or kAnyError
     FacetUse facets = FacetUse::kAll;
+    bool certify = false;  // as FrameParams
     bool fit_all = false;  // see DivideParams; for lines that run on from facet to facet
 };
 

@@ -37,6 +37,8 @@ struct FrameParams {
     std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
     std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
     FacetUse facets = FacetUse::kAll;
+    // What mirrors show is proven to be off by no more than max_error, which is above 0; what is not, traced.
+    bool certify = false;
 
     bool operator==(const FrameParams&) const = default;
 };
@@ -101,8 +103,8 @@ struct EnumNames<Shading> {
 /// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification", "position"
-    // and "ray".
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification",
+    // "position", "ray" and "bound".
     std::vector<std::string> layers;
     // Of a sample's light what is shown of it, 0..1: the film's filter averages that, R G B are then no
     // light. None: light. A highlight a thousand times as bright as the screen's white else outweighs all
@@ -139,7 +141,11 @@ struct LayerStatistics {
     std::size_t crowded_out = 0;         // facets whose paths need more memory than is kept for them: traced
     std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
     double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
-    double outline_pixels = 0;   // predicted: that lie between the outlines of optics and of their facets
+    // Pixels of optics whose displacement is proven to be no more than asked for, and the most of these
+    // bounds.
+    std::size_t certified_pixels = 0;
+    double certified_error = 0;
+    double outline_pixels = 0;  // predicted: that lie between the outlines of optics and of their facets
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
     // paths that would go on to another optic after the last that is followed.
     double faint_light = 0, deep_light = 0;
@@ -172,8 +178,10 @@ struct Picture {
 
 /// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
 /// "stat", "magnification" (which goes with a path's own layer), "position" (directID and directP: what the
-/// camera sees itself, where no optic is first) and "ray" (reflectD and reflectO, refractD and refractO: the
-/// last ray's unit direction and its origin, world frame; with a path's own layer).
+/// camera sees itself, where no optic is first), "ray" (reflectD and reflectO, refractD and refractO: the
+/// last ray's unit direction and its origin, world frame; with a path's own layer) and "bound" (pixels: by
+/// how much what a mirror shows is displaced at most, where that is proven; 0 where it is traced, or not
+/// asked).
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

@@ -36,6 +36,8 @@ struct OpticView {
     double way = 0;        // of a ray that does not start in air: its length to the optic, scene units
     double predicted = 0;  // displacement that its facet may have, pixels, where an error was asked for
 
+    double bound = 0;  // the same as proven, where that was asked for; 0 of traced samples
+
     CutPaths cut;  // what was not followed: of projected samples the most of the whole optic, but for `faint`
     Vec3 deep{0};  // of its facet or its own path alone: light that would go on after the last optic
 

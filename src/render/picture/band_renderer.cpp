@@ -204,6 +204,8 @@ void count(const World& world, const SampleViews& middle, const SampleView& view
     counts.subdivided_pixels += !view.traced && view.level > 0;
     counts.faint_light = std::max(counts.faint_light, of_worst_colour(on_optic.cut.faint));
     counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);
+    counts.certified_pixels += on_optic.bound > 0;
+    counts.certified_error = std::max(counts.certified_error, on_optic.bound);
     counts.deep_light = std::max(counts.deep_light, of_worst_colour(on_optic.cut.too_deep));
     const double deep = of_worst_colour(on_optic.deep);
     counts.deep_pixels += deep > kLeastWeight;
@@ -218,6 +220,8 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
     to.subdivided_pixels += from.subdivided_pixels;
     to.faint_light = std::max(to.faint_light, from.faint_light);
     to.predicted_error = std::max(to.predicted_error, from.predicted_error);
+    to.certified_pixels += from.certified_pixels;
+    to.certified_error = std::max(to.certified_error, from.certified_error);
     to.outline_pixels += from.outline_pixels;
     to.deep_light = std::max(to.deep_light, from.deep_light);
     to.deep_pixels += from.deep_pixels;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
@@ -30,6 +31,12 @@ Id count_steps(const SampleViews& views, const SampleView& view) {
                                          [](const Step& step) { return step.event != Event::kPass; }));
 }
 
+/// The least float that is no less.
+float round_up(double value) {
+    const float nearest = static_cast<float>(value);
+    return nearest < value ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
 /// What the camera sees itself.
 PathEnd direct_end(const SampleView& view) {
     PathEnd end;
@@ -50,6 +57,7 @@ const std::vector<std::string>& layer_names() {
         all.push_back("magnification");
         all.push_back("position");
         all.push_back("ray");
+        all.push_back("bound");
         return all;
     }();
     return names;
@@ -69,7 +77,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
     const auto wanted = [&](const std::string& layer) {
         if (layers.empty())
             return layer != "path" && layer != "stat" && layer != "magnification" && layer != "position" &&
-                   layer != "ray";
+                   layer != "ray" && layer != "bound";
         return std::find(layers.begin(), layers.end(), layer) != layers.end();
     };
     for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
@@ -105,6 +113,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         ends_.push_back(end);
     }
     if (wanted("path")) path_count_ = add_ids("path.count");
+    if (wanted("bound")) bound_ = add_floats("bound");
     if (wanted("stat")) {
         method_ = add_ids("stat.method");
         level_ = add_ids("stat.level");
@@ -190,6 +199,7 @@ void Canvas::put_centre(const World& world, const SampleViews& views, const Samp
         floats(optic_v_)[pixel] = static_cast<float>(uv.y);
     }
     if (path_count_ != kNone) ids(path_count_)[pixel] = count_steps(views, view);
+    if (bound_ != kNone) floats(bound_)[pixel] = optic ? round_up(views.on_optic(view).bound) : 0.0f;
     if (method_ != kNone) {
         ids(method_)[pixel] = view.traced ? 2 : view.level > 0 ? 1 : 0;
         ids(level_)[pixel] = view.level;

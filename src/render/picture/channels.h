@@ -53,6 +53,7 @@ class Canvas {
     std::array<std::array<std::size_t, 3>, 3> parts_{};  // direct, reflect, refract
     std::size_t depth_ = kNone;
     std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
+    std::size_t bound_ = kNone;  // a proven displacement, pixels
     std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone, fragments_ = kNone;
     std::vector<EndChannels> ends_;
 };
