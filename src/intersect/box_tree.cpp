@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <map>
 #include <vector>
@@ -31,7 +32,17 @@ struct Query : EmbreeContext {
     void* state = nullptr;
     const Id* box = nullptr;  // of each of Embree's primitives
     double t_start = 0, local_from_t = 0;
-    double t_far = 0;  // the smallest that the callback gave
+    double t_far = 0;           // the smallest that the callback gave
+    std::exception_ptr thrown;  // by the callback: Embree lets nothing pass
+
+    double ask(Id primitive) noexcept {
+        try {
+            return callback(state, box[primitive]);
+        } catch (...) {
+            thrown = std::current_exception();
+            return -kNever;
+        }
+    }
 };
 
 /// The element in the middle by size; `values` is not empty.
@@ -119,7 +130,7 @@ void on_box(const RTCIntersectFunctionNArguments* arguments) noexcept {
     if (!arguments->valid[0]) return;
     Query& query = *static_cast<Query*>(arguments->context);
     RTCRayHit& hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-    const double t_far = query.callback(query.state, query.box[arguments->primID]);
+    const double t_far = query.ask(arguments->primID);
     query.t_far = std::min(query.t_far, t_far);
     const double s_far = (t_far - query.t_start) * query.local_from_t;
     if (!(s_far < hit.ray.tfar)) return;
@@ -202,6 +213,7 @@ void BoxTree::visit_with(const Ray& ray, const Interval& interval, Callback call
         embree.ray.mask = ~0u;
         embree.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         intersect_one(group.scene, &query, &embree);
+        if (query.thrown) std::rethrow_exception(query.thrown);
         t_max = query.t_far;
     }
 }
@@ -242,9 +254,17 @@ struct SegmentQuery : EmbreeContext {
     void* state = nullptr;
     const Id* box = nullptr;  // of each of Embree's primitives
     Segments::Bits found = 0;
+    std::exception_ptr thrown;  // by the callback; then no segment asks any more
 
-    bool asks(std::size_t segment, Id primitive) {
-        if (!callback(state, segment, box[primitive])) return false;
+    /// Whether the segment has found what it looked for.
+    bool ends(std::size_t segment, Id primitive) noexcept {
+        if (thrown) return true;
+        try {
+            if (!callback(state, segment, box[primitive])) return false;
+        } catch (...) {
+            thrown = std::current_exception();
+            return true;
+        }
         found |= Segments::bit(segment);
         return true;
     }
@@ -258,7 +278,7 @@ void BoxTree::Data::on_box_of_segments(const RTCOccludedFunctionNArguments* argu
     const unsigned count = arguments->N;
     for (unsigned i = 0; i < count; ++i) {
         if (!arguments->valid[i]) continue;
-        if (query.asks(RTCRayN_id(arguments->ray, count, i), arguments->primID))
+        if (query.ends(RTCRayN_id(arguments->ray, count, i), arguments->primID))
             RTCRayN_tfar(arguments->ray, count, i) = -std::numeric_limits<float>::infinity();
     }
 }
@@ -288,6 +308,7 @@ Segments::Bits BoxTree::find_with(const Segments& segments, SegmentCallback call
             ask.operator()<RTCRay8, 8>();
         else
             ask.operator()<RTCRay4, 4>();
+        if (query.thrown) std::rethrow_exception(query.thrown);
         found |= query.found;
     }
     for_each_of(unusual, [&](std::size_t i) {

@@ -30,8 +30,8 @@ class BoxTree {
 
     /// Calls visitor(box) for every box that the ray meets within [t_min, t_max], some that it just misses,
     /// roughly from near to far in each tree but in no promised order, each once. The visitor returns the t
-    /// beyond which boxes no longer matter (minus infinity to stop); it must not throw. A ray that is not
-    /// finite, or has no direction, meets nothing.
+    /// beyond which boxes no longer matter (minus infinity to stop); what it throws ends the visit and is
+    /// thrown on. A ray that is not finite, or has no direction, meets nothing.
     template <typename Visitor>
     void visit(const Ray& ray, double t_min, double t_max, Visitor&& visitor) const {
         static_assert(std::is_invocable_r_v<double, Visitor&, Id>);
@@ -41,7 +41,7 @@ class BoxTree {
     }
 
     /// Calls visitor(segment, box) for the boxes that each segment may meet, as above, with the segment's
-    /// number, until it returns true: the segments for which it did. It must not throw.
+    /// number, until it returns true: the segments for which it did. What it throws is thrown on.
     template <typename Visitor>
     Segments::Bits find(const Segments& segments, Visitor&& visitor) const {
         static_assert(std::is_invocable_r_v<bool, Visitor&, std::size_t, Id>);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <random>
 #include <vector>
 
@@ -118,4 +119,19 @@ TEST_CASE("what a visitor says ends the visit in every tree", "[intersect][truth
         });
         CHECK(count == 1);
     }
+}
+
+TEST_CASE("what a visitor throws comes out of the visit", "[intersect][truth]") {
+    const std::vector<Box> boxes{{Vec3(-1), Vec3(1)}, {Vec3(2, -1, -1), Vec3(3, 1, 1)}};
+    const BoxTree tree(boxes);
+    const Ray ray{{-5, 0.1, 0.2}, {1, 0, 0}};
+    std::size_t asked = 0;
+    CHECK_THROWS_AS(tree.visit(ray, 0, kInfinity,
+                               [&](Id) -> double {
+                                   ++asked;
+                                   throw std::bad_alloc();
+                               }),
+                    std::bad_alloc);
+    CHECK(asked >= 1);
+    CHECK(visited(tree, ray).size() == 2);
 }

@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include <memory>
+#include <mutex>
 #include <new>
 #include <system_error>
 #include <thread>
@@ -16,19 +17,24 @@
 namespace trilens {
 namespace {
 
-std::unique_ptr<tbb::global_control>& limit() {
-    static std::unique_ptr<tbb::global_control> control;
-    return control;
+struct ThreadLimit {
+    std::mutex mutex;
+    std::unique_ptr<tbb::global_control> control;
+};
+
+ThreadLimit& limit() {
+    static ThreadLimit one;
+    return one;
 }
 
 }  // namespace
 
 void set_thread_count(int threads) {
-    limit().reset();
-    if (threads > 0) {
-        limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                        static_cast<std::size_t>(threads));
-    }
+    const std::scoped_lock lock(limit().mutex);
+    limit().control.reset();
+    if (threads > 0)
+        limit().control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                                static_cast<std::size_t>(threads));
 }
 
 int thread_count() {
