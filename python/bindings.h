@@ -120,13 +120,15 @@ void bind_unwrap(RendererClass& renderer, py::module_& module);  // unwrap, map,
 /// {"/json/pointer": value} as the library takes it; texts stay texts.
 std::vector<SceneOverride> overrides_of(const py::dict& overrides);
 
-// Caustics and fold curves of line drawings as numpy arrays.
+// Caustics, edges and fold curves of line drawings as numpy arrays.
 
 /// A dict for each sheet: path, optic, sheet, virtual, points, triangles, segments.
 py::list caustic_list(const LineDrawing& drawing);
 
-/// A dict for each curve: object, points, places.
+/// A dict for each edge: path, optic, object, points.
 py::list edge_list(const LineDrawing& drawing);
+
+/// A dict for each curve: object, points, places.
 py::list fold_list(const LineDrawing& drawing);
 
 }  // namespace trilens::python

@@ -238,9 +238,9 @@ std::vector<Command> render_commands() {
                                 .choices = {"facets", "limit"}}}});
     by_rays.body = [trace](Console& console) {
         if (trace->surface == "limit" &&
-            (trace->rays + trace->grid + trace->facets != "" || trace->max_error >= 0))
+            (trace->rays + trace->grid + trace->facets != "" || trace->max_error >= 0 || trace->certify))
             throw UsageError(
-                "--rays, --grid, --facets and --max-error are about facets; add --surface facets");
+                "--rays, --grid, --facets, --max-error and --certify are about facets; add --surface facets");
         return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth,
                    console);
     };

@@ -185,8 +185,8 @@ PictureRequest picture_request(const RenderOptions& options, const EngineChoice&
 void check_options(const RenderOptions& options, const std::string& format, const EngineChoice& engine) {
     if (is_vector(format) && engine.engine == Engine::kClassic)
         throw UsageError("an ." + format + " is drawn by the exact engine; leave out --engine classic");
-    if (is_vector(format) && options.max_error >= 0)
-        throw UsageError("--max-error is for pictures of pixels; an ." + format +
+    if (is_vector(format) && (options.max_error >= 0 || options.certify))
+        throw UsageError("--max-error and --certify are for pictures of pixels; an ." + format +
                          " shows the facets undivided");
     if (options.max_error >= 0 && (options.engine == "envmap" || options.engine == "planar"))
         throw UsageError("--max-error divides the facets of the exact engine, not of --engine " +

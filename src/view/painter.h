@@ -18,9 +18,9 @@
 namespace trilens {
 
 /// What is drawn of a state, in this order. kCoarse: fewer pixels, where all would take long; of the exact
-/// engine they are traced. kPixels: one
-/// sample in each. kLines: paths, images of places, folds, the bird's-eye view. kComparison: the truth and
-/// what is measured against it. kFine, kFinest: 4 x 4 and 8 x 8 samples.
+/// engine they are traced. kPixels: one sample in each. kLines: paths, images of places, edges, folds, the
+/// bird's-eye view. kComparison: the truth and what is measured against it. kFine, kFinest: 4 x 4 and 8 x 8
+/// samples.
 enum class DrawStage { kCoarse, kPixels, kLines, kComparison, kFine, kFinest, kDone };
 
 template <>

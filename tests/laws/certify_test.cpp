@@ -149,7 +149,12 @@ TEST_CASE("what is not proven is traced: glass, and whatever is off by more", "[
     CHECK(strict.statistics.certified_error <= 1e-3);
 }
 
-TEST_CASE("a proof needs an error to prove", "[laws]") {
+TEST_CASE("a proof needs an error to prove, and facets", "[laws]") {
     const auto world = shipped_world("sphere", 4, 40, 30);
     CHECK_THROWS_AS(draw(*world, certified(0)), UsageError);
+    for (const Engine engine : {Engine::kLimitTruth, Engine::kPlanar, Engine::kEnvironment}) {
+        PictureRequest request = certified(kLimit);
+        request.engine = engine;
+        CHECK_THROWS_AS(draw(*world, request), UsageError);
+    }
 }

@@ -22,6 +22,11 @@ CellBox box_around(const SurfaceParameter& at, double half) {
     return {at.face, glm::clamp(at.uv - half, 0.0, 1.0), glm::clamp(at.uv + half, 0.0, 1.0)};
 }
 
+/// Whether all of the box is the face's; a triangle ends at u + v = 1.
+bool is_inside(const Surface& surface, const CellBox& box) {
+    return surface.domain(box.face) == FaceDomain::kSquare || box.high.x + box.high.y <= 1;
+}
+
 /// How far on the film points within `radius` of one that the camera sees at `pixel` may lie from there.
 double film_radius(const LinearCamera& camera, const Vec3& point, const Vec2& pixel, double radius) {
     const double depth = screen_from_world(camera, point).z, change = length(Vec3(camera.screen_w));
@@ -82,6 +87,7 @@ std::optional<double> SampleCertifier::displacement_bound(const ReflectedSight& 
 
     for (const double half_side : kHalfSides) {
         const CellBox box = box_around(image->at, half_side);
+        if (!is_inside(*world_.optics[optic_].surface, box)) continue;
         const SurfaceBounds bounds = bounder_->bounds(box.face, box.low, box.high);
         // A direction's place at that distance from anywhere in the box instead of from the ray's start.
         const double room =
