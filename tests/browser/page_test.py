@@ -4,10 +4,12 @@ page_test.py [PICTURE.png]: builds the page by scripts/browser first; exit code 
 """
 
 import base64
+import contextlib
 import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -30,7 +32,7 @@ class Browser:
             os.dup2(ends[1], 4)
 
         self.process = subprocess.Popen(command, preexec_fn=pipes, close_fds=False, stdout=subprocess.DEVNULL,
-                                        stderr=subprocess.DEVNULL)
+                                        stderr=subprocess.DEVNULL, start_new_session=True)
         os.close(to_read)
         os.close(to_write)
         self.out, self.inward, self.rest, self.number, self.said = ours, theirs, b"", 0, []
@@ -68,6 +70,16 @@ class Browser:
     def mouse(self, kind, x, y):
         self.call("Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1,
                                                "buttons": 0 if kind == "mouseReleased" else 1})
+
+    def end(self):
+        """Asks Chromium to end, which ends what it started; its whole group is killed where it does not."""
+        with contextlib.suppress(OSError):
+            os.write(self.out, b'{"id": 0, "method": "Browser.close"}\0')
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self.process.wait(timeout=10)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
 
 
 def wait(condition, what, seconds=120):
@@ -108,7 +120,8 @@ def main():
         return built.returncode
     page = source / built.stdout.strip()
     assert page.stat().st_size < 2e6, "the page is larger than 2 MB"
-    with tempfile.TemporaryDirectory() as profile:
+    # A process of Chromium that is still dying may write into its profile while that is removed.
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = Browser(program, profile)
         try:
             browser.call("Page.navigate", {"url": page.as_uri()})
@@ -154,8 +167,7 @@ def main():
                     print(f"{what}: {len(times)} pictures, median {times[len(times) // 2]:.0f} ms, "
                           f"{browser.value('window.mirror.workers')} workers")
         finally:
-            browser.process.kill()
-            browser.process.wait()
+            browser.end()
     return 0
 
 
