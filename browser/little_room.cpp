@@ -112,6 +112,11 @@ LittleRoom make_room() {
     build.turned({-1.1, 0, 3.3}, {{0, 0}, {0.32, 0}, {0.32, 1.5}, {0, 1.5}}, false);
     build.begin({0.16, 0.13, 0.11});  // the mirror's foot
     build.turned({0, 0, 0}, {{0, 0}, {0.6, 0}, {0.6, 0.07}, {0.09, 0.12}, {0.09, 0.3}, {0, 0.3}}, false);
+    for (const IdTriple& corner : room.scene.triangles) {
+        const auto at = [&](int k) { return room.scene.points[corner[static_cast<std::size_t>(k)]]; };
+        const Vec3 normal = normalize_or_zero(cross(at(1) - at(0), at(2) - at(0)));
+        room.flat.push_back(room.normal[corner[0]] == Vec3(0) ? normal : Vec3(0));
+    }
     room.ready = std::make_unique<PreparedScene>(room.scene);
 
     OrthographicParams sun;
@@ -138,12 +143,11 @@ Vec3 sky(const Vec3& direction) {
 Vec3 light_of(const LittleRoom& room, const Hit& hit) {
     const IdTriple& corner = room.scene.triangles[hit.triangle];
     const Vec3 at = position(room.scene, hit);
-    Vec3 normal = (1 - hit.barycentric.x - hit.barycentric.y) * room.normal[corner[0]] +
-                  hit.barycentric.x * room.normal[corner[1]] + hit.barycentric.y * room.normal[corner[2]];
-    if (dot(normal, normal) < 1e-6)
-        normal = cross(room.scene.points[corner[1]] - room.scene.points[corner[0]],
-                       room.scene.points[corner[2]] - room.scene.points[corner[0]]);
-    normal = normalize_or_zero(normal);
+    Vec3 normal = room.flat[hit.triangle];
+    if (normal == Vec3(0))
+        normal = normalize_or_zero((1 - hit.barycentric.x - hit.barycentric.y) * room.normal[corner[0]] +
+                                   hit.barycentric.x * room.normal[corner[1]] +
+                                   hit.barycentric.y * room.normal[corner[2]]);
 
     const Id object = room.scene.object[hit.triangle];
     Vec3 colour = room.colour[object];

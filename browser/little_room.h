@@ -13,6 +13,7 @@ struct LittleRoom {
     TriangleScene scene;
     std::vector<Vec3> colour;  // per object, linear
     std::vector<Vec3> normal;  // per corner of `scene`'s points: unit, for smooth things; zero: flat
+    std::vector<Vec3> flat;    // per triangle: its plane's unit normal; zero: smooth
     std::unique_ptr<PreparedScene> ready;  // `scene`
     LinearCamera sun;          // looks down from the sun: its picture is the shadow map (Williams 1978)
     std::vector<Visible> lit;  // of the sun's film: what the sun reaches first

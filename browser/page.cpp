@@ -12,7 +12,7 @@ namespace {
 
 /// The numbers of a frame, in the order of kNumbers in the page's script.
 std::array<double, 29> numbers{};
-std::vector<std::uint8_t> pixels;
+FrameBuffers seen;
 std::vector<float> corners;
 std::array<double, 2> place{};
 
@@ -47,8 +47,8 @@ EMSCRIPTEN_KEEPALIVE double* frame_numbers() {
 }
 
 EMSCRIPTEN_KEEPALIVE const std::uint8_t* draw() {
-    pixels = draw_frame(room(), frame_of_numbers());
-    return pixels.data();
+    draw_frame(room(), frame_of_numbers(), seen);
+    return seen.rgba.data();
 }
 
 EMSCRIPTEN_KEEPALIVE std::size_t outline() {

@@ -42,12 +42,6 @@ std::uint8_t shown(double light) {
     return table[static_cast<std::size_t>(4096 * std::clamp(light, 0.0, 1.0))];
 }
 
-/// The window's samples: what the camera sees directly, and which facet of the mirror lies before it.
-struct Direct {
-    SampleGrid samples;
-    std::vector<Hit> room, mirror;  // unset where nothing is seen
-};
-
 /// The part of the samples' window in which the mirror may be seen; all of it where one of its points does
 /// not lie before the camera.
 SampleGrid window_of(const SurfaceGrid& facets, const LinearCamera& camera, const SampleGrid& samples) {
@@ -69,73 +63,70 @@ SampleGrid window_of(const SurfaceGrid& facets, const LinearCamera& camera, cons
     return part;
 }
 
-Direct look(const LittleRoom& room, const Frame& frame, const SurfaceGrid& facets,
-            const SampleGrid& samples) {
+/// What the camera sees of the samples: the room, and the mirror's facet wherever it lies before that.
+void look(const LittleRoom& room, const Frame& frame, const SurfaceGrid& facets, const SampleGrid& samples,
+          FrameBuffers& seen) {
     const LinearCamera camera = camera_of(frame);
     const RayMesh rays = make_camera_mesh(camera, frame.width, frame.height);
-    Direct direct{samples, {}, {}};
-    direct.room.resize(samples.size());
-    direct.mirror.resize(samples.size());
-    draw(*room.ready, rays, rasterize_facets(rays, samples), samples, direct.room);
+    seen.room.assign(samples.size(), Hit());
+    seen.mirror.assign(samples.size(), kNone);
+    draw(*room.ready, rays, rasterize_facets(rays, samples), samples, seen.room);
     const SampleGrid part = window_of(facets, camera, samples);
-    if (part.size() == 0) return direct;
+    if (part.size() == 0) return;
     TriangleScene mirror;
     append_facets(facets, 0, mirror);
-    std::vector<Hit> hits(part.size());
-    draw(PreparedScene(mirror), rays, rasterize_facets(rays, part), part, hits);
-    const std::size_t run = hits.size() / part.runs();
-    for (std::size_t s = 0; s < hits.size(); s += run)
-        std::copy_n(hits.begin() + static_cast<std::ptrdiff_t>(s), run,
-                    direct.mirror.begin() + static_cast<std::ptrdiff_t>(part.sample_in(samples, s)));
-    return direct;
+    seen.part.assign(part.size(), Visible());
+    find_visible(PreparedScene(mirror), rays, rasterize_facets(rays, part), part, seen.part);
+    for (std::size_t i = 0; i < seen.part.size(); ++i) {
+        const Visible& facet = seen.part[i];
+        const std::size_t s = part.sample_in(samples, i);
+        if (facet.seen() && (!seen.room[s].seen() || double{facet.t_high} < seen.room[s].t))
+            seen.mirror[s] = facet.triangle;
+    }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> draw_frame(const LittleRoom& room, const Frame& frame) {
+void draw_frame(const LittleRoom& room, const Frame& frame, FrameBuffers& seen) {
     const LinearCamera camera = camera_of(frame);
     const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
     const SampleGrid samples{0, frame.first_row, frame.width, frame.last_row, frame.side};
-    const Direct direct = look(room, frame, facets, samples);
+    look(room, frame, facets, samples, seen);
 
     // The samples that see the mirror's front belong to the facets that they see, and the room is projected
     // through these.
-    std::vector<Id> owner(samples.size(), kNone);
-    std::vector<char> before(samples.size(), 0);  // the mirror is seen, either side
-    for (std::size_t s = 0; s < owner.size(); ++s) {
-        const Hit& hit = direct.mirror[s];
-        before[s] = hit.seen() && (!direct.room[s].seen() || hit.t < direct.room[s].t);
-        if (before[s] && shows_front(facets, hit.triangle, frame.eye)) owner[s] = hit.triangle;
-    }
+    std::vector<char> front(facets.facets.size());
+    for (std::size_t f = 0; f < front.size(); ++f) front[f] = shows_front(facets, f, frame.eye);
+    seen.owner.resize(samples.size());
+    for (std::size_t s = 0; s < seen.owner.size(); ++s)
+        seen.owner[s] = seen.mirror[s] != kNone && front[seen.mirror[s]] ? seen.mirror[s] : kNone;
     const RayMesh mirror = make_reflection(facets, camera);
-    std::vector<Hit> mirrored(samples.size());
-    draw(*room.ready, mirror, group_by_facet(owner, facets.facets.size()), samples, mirrored);
+    seen.mirrored.assign(samples.size(), Hit());
+    draw(*room.ready, mirror, group_by_facet(seen.owner, facets.facets.size()), samples, seen.mirrored);
 
     // Rays of samples are asked for only where they see the sky.
     std::vector<FacetWeights> weights(mirror.facets.size());
     for (std::size_t f = 0; f < weights.size(); ++f)
         if (mirror.has_rays(f)) weights[f] = facet_weights(mirror, f);
     const auto light_at = [&](std::size_t s) -> Vec3 {
-        if (owner[s] != kNone) {
-            if (mirrored[s].seen()) return kSilver * light_of(room, mirrored[s]);
-            const Id facet = owner[s];
+        if (const Id facet = seen.owner[s]; facet != kNone) {
+            if (seen.mirrored[s].seen()) return kSilver * light_of(room, seen.mirrored[s]);
             if (!mirror.has_rays(facet) || weights[facet].edge_on) return kBack;
             return kSilver * sky(sample_ray(mirror, facet, weights[facet], samples.position(s)).direction);
         }
-        if (before[s]) return kBack;
-        return direct.room[s].seen() ? light_of(room, direct.room[s])
-                                     : sky(film_ray(camera, samples.position(s)).direction);
+        if (seen.mirror[s] != kNone) return kBack;
+        return seen.room[s].seen() ? light_of(room, seen.room[s])
+                                   : sky(film_ray(camera, samples.position(s)).direction);
     };
 
-    std::vector<std::uint8_t> rgba(4 * samples.pixels(), 255);
+    seen.rgba.assign(4 * samples.pixels(), 255);
     const std::size_t each = static_cast<std::size_t>(samples.samples_per_pixel());
     for (std::size_t p = 0; p < samples.pixels(); ++p) {
         Vec3 light(0);
         for (std::size_t s = p * each; s < (p + 1) * each; ++s) light += light_at(s);
         for (int c = 0; c < 3; ++c)
-            rgba[4 * p + static_cast<std::size_t>(c)] = shown(light[c] / static_cast<double>(each));
+            seen.rgba[4 * p + static_cast<std::size_t>(c)] = shown(light[c] / static_cast<double>(each));
     }
-    return rgba;
 }
 
 std::vector<float> facets_on_film(const Frame& frame) {
@@ -158,9 +149,16 @@ std::vector<float> facets_on_film(const Frame& frame) {
 std::optional<Vec2> mirror_place(const LittleRoom& room, const Frame& frame, const Vec2& at) {
     const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
-    const Direct direct = look(room, frame, facets, {x, y, x + 1, y + 1, 1});
-    const Hit& hit = direct.mirror[0];
-    if (!hit.seen() || (direct.room[0].seen() && direct.room[0].t < hit.t)) return std::nullopt;
+    const SampleGrid sample{x, y, x + 1, y + 1, 1};
+    FrameBuffers seen;
+    look(room, frame, facets, sample, seen);
+    if (seen.mirror[0] == kNone) return std::nullopt;
+    TriangleScene mirror;
+    append_facets(facets, 0, mirror);
+    const RayMesh rays = make_camera_mesh(camera_of(frame), frame.width, frame.height);
+    Hit hit;
+    draw(PreparedScene(mirror), rays, rasterize_facets(rays, sample), sample, {&hit, 1});
+    if (!hit.seen()) return std::nullopt;
     const std::array<Vec2, 3>& uv = facets.facet_uv[hit.triangle];
     return (1 - hit.barycentric.x - hit.barycentric.y) * uv[0] + hit.barycentric.x * uv[1] +
            hit.barycentric.y * uv[2];

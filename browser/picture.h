@@ -18,8 +18,16 @@ struct Frame {
     BentMirror mirror;
 };
 
-/// RGBA of the rows, eight bits each, sRGB.
-std::vector<std::uint8_t> draw_frame(const LittleRoom& room, const Frame& frame);
+/// What is known of a frame's samples, kept from frame to frame for its memory alone.
+struct FrameBuffers {
+    std::vector<Hit> room, mirrored;  // seen by the camera, and through the mirror's facets
+    std::vector<Visible> part;        // of the samples near the mirror: its facets
+    std::vector<Id> mirror, owner;    // the facet before the room, and where it shows its front
+    std::vector<std::uint8_t> rgba;   // of the rows' pixels, eight bits each, sRGB
+};
+
+/// Draws the rows into `seen.rgba`.
+void draw_frame(const LittleRoom& room, const Frame& frame, FrameBuffers& seen);
 
 /// The corners of the mirror's facets on the film, three x, y pairs for each, in pixels; facets that do not
 /// lie before the camera are left out.

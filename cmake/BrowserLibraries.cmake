@@ -11,7 +11,8 @@ target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
 add_library(TBB::tbb INTERFACE IMPORTED)
 
 # Exceptions of WebAssembly's own, and vectors of 128 bits. Highway 1.0's own vectors for WebAssembly have no doubles: its plain ones do, of which the
-# compiler makes vectors.
+# compiler makes vectors; what the kernel asks most is written as instructions.
 add_compile_options(-fwasm-exceptions -msimd128 -include ${PROJECT_SOURCE_DIR}/browser/older_library.h)
+include_directories(BEFORE ${PROJECT_SOURCE_DIR}/browser/vectors)
 add_link_options(-fwasm-exceptions)
 target_compile_definitions(hwy::hwy INTERFACE "HWY_DISABLED_TARGETS=(HWY_WASM|HWY_WASM_EMU256)")
