@@ -16,27 +16,19 @@ import subprocess
 import sys
 import tempfile
 
-REPEATS = 5
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tests/view"))
+from xvfb import NO_DISPLAY, display
+
+REPEATS = 5
 
 
-def display():
-    """An Xvfb and its number."""
-    read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp"], pass_fds=[write],
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    os.close(write)
-    return server, os.fdopen(read).readline().strip()
-
-
-def run(build, folder, scene, steps, number):
+def run(build, folder, scene, steps, environment):
     """What the viewer says of itself, and its processor seconds."""
     (folder / "steps.json").write_text(json.dumps(steps))
     words = [build / "trilens", "view", scene, "--script", "steps.json", "--window-size", "1280x800", "--json"]
-    environment = dict(os.environ)
-    if number is not None:
+    if "DISPLAY" in environment:
         words.append("--window")
-        environment |= {"DISPLAY": ":" + number, "LIBGL_ALWAYS_SOFTWARE": "1"}
     before = os.times()
     answer = json.loads(subprocess.run(words, check=True, cwd=folder, env=environment, capture_output=True, text=True).stdout)
     after = os.times()
@@ -48,13 +40,13 @@ def spread(values, digits=3):
     return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
 
 
-def rows_of(build, folder, number, where):
+def rows_of(build, folder, environment, where):
     orbit = [{"show": {"n": 16}}, {"wait": "picture"}, {"orbit": [60, 10], "frames": 60}]
-    runs = [run(build, folder, "ball.json", orbit, number) for _ in range(REPEATS)]
+    runs = [run(build, folder, "ball.json", orbit, environment) for _ in range(REPEATS)]
     turns = [one["steps"][-1] for one in runs]
     yield where, "mirror ball 640x480, n = 16", "first picture, s", spread([one["first_picture_seconds"] for one in runs])
     yield where, "the same, orbiting", "pictures a second", spread([one["frames"] / one["seconds"] for one in turns], 1)
-    runs = [run(build, folder, SOURCE / "scenes/paths/wine-glass.json", [{"wait": "picture"}], number) for _ in range(REPEATS)]
+    runs = [run(build, folder, SOURCE / "scenes/paths/wine-glass.json", [{"wait": "picture"}], environment) for _ in range(REPEATS)]
     yield where, "wine glass 480x360", "first coarse picture, s", spread([one["first_picture_seconds"] for one in runs])
 
 
@@ -67,14 +59,10 @@ def main():
         ball = json.loads(re.sub(r"^\s*//.*$", "", ball, flags=re.M))
         ball["film"] = {"width": 640, "height": 480}
         (folder / "ball.json").write_text(json.dumps(ball))
-        rows += rows_of(build, folder, None, "in memory")
+        rows += rows_of(build, folder, NO_DISPLAY, "in memory")
         if shutil.which("Xvfb"):
-            server, number = display()
-            try:
-                rows += rows_of(build, folder, number, "in a window")
-            finally:
-                server.terminate()
-                server.wait()
+            with display() as environment:
+                rows += rows_of(build, folder, environment, "in a window")
         else:
             print("in a window: left out, there is no Xvfb", file=sys.stderr)
     out.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,6 @@
 
     python3 window_test.py BUILD FOLDER      ends with 77 where Xvfb is missing"""
 import json
-import os
 import pathlib
 import re
 import shutil
@@ -14,8 +13,9 @@ import sys
 import threading
 import zlib
 
+from xvfb import NO_DISPLAY, display
+
 BUILD, FOLDER = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-NO_DISPLAY = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
 
 
 def trilens(*words, code=0, environment=NO_DISPLAY):
@@ -168,13 +168,7 @@ def in_window(scene, steps):
     if not shutil.which("Xvfb"):
         print("skipped: Xvfb is missing")
         sys.exit(77)
-    read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp"],
-                              pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        os.close(write)
-        number = os.fdopen(read).readline().strip()
-        environment = {**NO_DISPLAY, "DISPLAY": ":" + number, "LIBGL_ALWAYS_SOFTWARE": "1"}
+    with display() as environment:
         out, _ = trilens("view", scene, "--script", steps, "--screenshot", "window.png", "--window-size", "480x300", "--window",
                          "--json", environment=environment)
         answer = json.loads(out)
@@ -185,9 +179,6 @@ def in_window(scene, steps):
                          environment={**environment, "MESA_GL_VERSION_OVERRIDE": "2.1"})
         assert "OpenGL 3.2" in err and "--script" in err, err
         return mean, far
-    finally:
-        server.terminate()
-        server.wait()
 
 
 FOLDER.mkdir(parents=True, exist_ok=True)
