@@ -146,16 +146,24 @@ struct Painter::Work {
         return film;
     }
 
+    /// A light's way through optics, by beams in the projector, is searched point by point in the truth.
+    bool has_caustics() const {
+        const auto lights = base_json.find("lights");
+        return lights != base_json.end() &&
+               std::any_of(lights->begin(), lights->end(),
+                           [](const Json& light) { return light.value("caustics", false); });
+    }
+
     /// Where all pixels take long, fewer of them. A facet there holds few samples, or none: to follow the
-    /// rays of these takes less than to prepare it.
+    /// rays of these takes less than to prepare it, but for caustics.
     void draw_coarse(const Progress& progress) {
         const int factor = coarse_factor(coarse, scene->film);
         if (full_seconds <= kLongSeconds || factor == 1) return;
         Film film = with_samples(1);
         film.width = std::max(1, film.width / factor);
         film.height = std::max(1, film.height / factor);
-        const bool is_exact = settings().engine == Engine::kExact;
-        draw_projected(film, is_exact ? Engine::kLimitTruth : settings().engine, progress);
+        const bool traces = settings().engine == Engine::kExact && !has_caustics();
+        draw_projected(film, traces ? Engine::kLimitTruth : settings().engine, progress);
         coarse = next_coarse_factor(factor, drawn.draw_seconds);
     }
 
