@@ -133,9 +133,19 @@ void bind_layers(py::module_& module) {
         field("coverage", &Moved::coverage, "Found pixels over those that show the layer, 0..1."),
         field("mean_off_folds", &Moved::mean_off_folds, "Mean away from folds of the reference, pixels."),
         field("near_folds", &Moved::near_folds, "Found pixels near such a fold."));
+    py::class_<BoundCheck> bounds(
+        module, "BoundCheck",
+        "Proven bounds of displacement (the test's layer \"bound\") against what was "
+        "measured.");
+    bind_fields(bounds, field("pixels", &BoundCheck::pixels, "Pixels that were checked."),
+                field("beyond", &BoundCheck::beyond, "Those displaced by more than their bound."),
+                field("excess", &BoundCheck::excess, "The largest displacement less its bound, pixels."),
+                field("tightness_p50", &BoundCheck::tightness_p50, "Median of bound over displacement."),
+                field("tightness_max", &BoundCheck::tightness_max, "Largest of bound over displacement."));
     py::class_<LayerComparison>(module, "LayerComparison", "What one layer of both images shows.")
         .def_readonly("layer", &LayerComparison::layer, "\"reflect\", \"refract\" or \"direct\".")
         .def_readonly("seen", &LayerComparison::seen, "None where the images do not tell.")
+        .def_readonly("bounds", &LayerComparison::bounds, "None where the test has no layer \"bound\".")
         .def_property_readonly(
             "displacement",
             [](const LayerComparison& self) {
@@ -177,7 +187,8 @@ void bind_comparison(py::module_& module) {
         .def("displacement_arrays", displacement_arrays, py::arg("layer"),
              "Of a layer, per pixel of the window (height, width), views without a copy: state (uint8: 0 "
              "nothing\n"
-             "seen, 1 found, 2 lost, 3 unmeasured), shift_x and shift_y (float32, pixels, from the test's pixel to the "
+             "seen, 1 found, 2 lost, 3 unmeasured), shift_x and shift_y (float32, pixels, from the test's "
+             "pixel to the "
              "place in\n"
              "the reference, x right and y down). Raises KeyError where it was not measured.")
         .def("difference", difference,

@@ -129,6 +129,7 @@ struct LayerComparison {
     std::string layer;  // "reflect", "refract", "direct"
     std::optional<SeenMismatch> seen;
     std::optional<Displacement> displacement;
+    std::optional<BoundCheck> bounds{};  // of "reflect", where the test has a channel "bound"
 };
 
 /// The layers that the reference has. Throws InputError where the images cannot be compared.
@@ -191,9 +192,10 @@ struct NamedMetric {
 /// kColourMetrics (flip as rgb_flip), then fail, warn, hard. Of what is seen, summed over
 /// the layers, object_mismatch, primitive_mismatch and coverage_mismatch, and each as percent of the pixels
 /// that see something. Of the displacement, the worst of the layers, displacement_mean, _p50, _p95, _p99,
-/// _max and _mean_off_folds in pixels; summed over the layers lost, unmeasured, beyond_radius and missing;
-/// lost_percent and unmeasured_percent of the test's pixels that see something; and the least coverage. Then what is seen and displaced of each
-/// layer alone: reflect.object_mismatch, refract.displacement_p95.
+/// _max and _mean_off_folds in pixels; summed over the layers lost, unmeasured, beyond_radius, missing and
+/// beyond_bound;
+/// lost_percent and unmeasured_percent of the test's pixels that see something; and the least coverage. Then
+/// what is seen and displaced of each layer alone: reflect.object_mismatch, refract.displacement_p95.
 std::vector<NamedMetric> named_metrics(const Comparison& comparison,
                                        const std::vector<LayerComparison>& layers);
 

@@ -94,6 +94,11 @@ void add_displacement(const Layers& layers, const std::string& prefix, std::vect
     all.push_back({prefix + "unmeasured_percent", percent(unmeasured, found + lost + unmeasured)});
     all.push_back({prefix + "beyond_radius", counted(beyond)});
     all.push_back({prefix + "missing", counted(missing)});
+    Metric beyond_bound;
+    for (const LayerComparison* layer : layers)
+        if (layer->bounds)
+            beyond_bound = beyond_bound.value_or(0) + static_cast<double>(layer->bounds->beyond);
+    all.push_back({prefix + "beyond_bound", beyond_bound});
     all.push_back({prefix + "coverage", coverage, true});
 }
 

@@ -199,6 +199,7 @@ TEST_CASE("every metric's limit holds at its own value and breaks beyond it", "[
     LayerComparison layer{"reflect", SeenMismatch{100, 13, 14, 15}, Displacement{}};
     layer.displacement->summary = Summary{16, 17, 18, 19, 20};
     layer.displacement->mean_off_folds = 21;
+    layer.bounds = BoundCheck{40, 27, 0.5, 1.0, 2.0};
     layer.displacement->pixels = 49;
     layer.displacement->lost = 25;
     layer.displacement->unmeasured = 26;

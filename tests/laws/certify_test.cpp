@@ -7,6 +7,7 @@
 #include "base/util/error.h"
 #include "camera/linear/linear_cameras.h"
 #include "laws/worlds.h"
+#include "measure/compare.h"
 #include "render/frame/frame.h"
 #include "render/picture/picture.h"
 #include "support/test.h"
@@ -126,6 +127,36 @@ TEST_CASE("a mirror shows things as far off as is proven, and nearly all pixels 
         CHECK(static_cast<double>(held.certified) >=
               least_share * static_cast<double>(picture.statistics.optic_pixels));
         CHECK(static_cast<double>(held.traced) > 0.97 * static_cast<double>(held.asked));
+    }
+}
+
+TEST_CASE("a comparison with the truth finds no pixel beyond its bound, and most beyond half of it", "[laws][law]") {
+    for (const char* scene : {"sphere", "saddle", "torus", "closed"}) {
+        const auto world = shipped_world(scene, 4, 320, 240);
+        PictureRequest request = certified(kLimit);
+        request.frame.facets = FacetUse::kAll;
+        Image test = draw(*world, request).image;
+        request.engine = Engine::kLimitTruth;
+        request.frame.certify = false;
+        request.frame.max_error.reset();
+        const Image truth = draw(*world, request).image;
+        const auto checked = [&] {
+            for (const LayerComparison& layer : compare_layers(truth, test))
+                if (layer.layer == "reflect") return layer.bounds;
+            return std::optional<BoundCheck>();
+        };
+        const std::optional<BoundCheck> held = checked();
+        REQUIRE(held);
+        CAPTURE(scene, held->pixels, *held->excess, *held->tightness_max);
+        CHECK(held->pixels > 2000);
+        CHECK(held->beyond == 0);
+        CHECK(std::fabs(*held->tightness_p50 - 1) < 0.01);
+
+        for (float& bound : test.find("bound")->floats()) bound /= 2;
+        const std::optional<BoundCheck> broken = checked();
+        REQUIRE(broken);
+        CHECK(broken->pixels == held->pixels);
+        CHECK(broken->beyond > held->pixels / 10);
     }
 }
 

@@ -279,3 +279,14 @@ def test_layers_that_cannot_be_are_told():
     told.clear()
     renderer.render(max_error=0.5, warn=told.append)  # nobody asked
     assert not any("no layers" in message for message in told)
+
+
+def test_a_comparison_checks_proven_bounds_as_the_command_does(command, tmp_path, renderer, truth):
+    image = renderer.render(resolution=4, max_error=0.5, certify=True, facets="all",
+                            layers=["Z", "direct", "reflect", "refract", "optic", "bound"])
+    truth.save(tmp_path / "truth.exr"), image.save(tmp_path / "image.exr")
+    code, answer = command("compare", tmp_path / "truth.exr", tmp_path / "image.exr", "--max", "beyond_bound=0")
+    bounds = trilens.compare(truth, image).layers["reflect"].bounds
+    assert bounds.pixels > 50 and bounds.beyond == 0 and code == 0
+    assert equal(bounds.to_dict(), answer["layers"]["reflect"]["bounds_px"])
+    assert trilens.compare(truth, renderer.render(resolution=4)).layers["reflect"].bounds is None

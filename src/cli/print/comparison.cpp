@@ -39,6 +39,23 @@ Json displacement_json(const Displacement& d) {
             {"near_folds", d.near_folds}};
 }
 
+Json bounds_json(const BoundCheck& b) {
+    return {{"pixels", b.pixels},
+            {"beyond", b.beyond},
+            {"excess", optional_json(b.excess)},
+            {"tightness_p50", optional_json(b.tightness_p50)},
+            {"tightness_max", optional_json(b.tightness_max)}};
+}
+
+std::string bounds_text(const std::string& layer, const BoundCheck& b) {
+    std::string text = fmt::format("{:<8} proven bounds: {} of {} checked pixels lie beyond theirs", layer,
+                                   b.beyond, b.pixels);
+    if (b.tightness_p50)
+        text += fmt::format("; bound over displacement p50 {:.4g}  max {:.4g}", *b.tightness_p50,
+                            *b.tightness_max);
+    return text + "\n";
+}
+
 std::string displacement_text(const std::string& layer, const Displacement& d) {
     std::string text = fmt::format("{:<8} displacement: nothing could be measured\n", layer);
     if (d.summary)
@@ -49,8 +66,7 @@ std::string displacement_text(const std::string& layer, const Displacement& d) {
     return text + fmt::format(
                       "{:<8} measured {:.2f} % of what either shows: {} lost, {} missing, {} unmeasured "
                       "({} beyond the radius)\n",
-                      layer, 100 * d.coverage.value_or(0), d.lost, d.missing, d.unmeasured,
-                      d.beyond_radius);
+                      layer, 100 * d.coverage.value_or(0), d.lost, d.missing, d.unmeasured, d.beyond_radius);
 }
 
 std::string left_out_text(const std::string& image, const std::vector<std::string>& names) {
@@ -82,6 +98,7 @@ std::string summary_text(const ComparedInputs& inputs) {
                 layer.layer, seen->pixels, seen->object_mismatch, seen->primitive_mismatch,
                 seen->coverage_mismatch);
         if (const auto& d = layer.displacement; d && d->coverage) text += displacement_text(layer.layer, *d);
+        if (layer.bounds) text += bounds_text(layer.layer, *layer.bounds);
     }
     for (const std::string& reason : comparison.reasons) text += reason + "\n";
     return text +
@@ -122,6 +139,7 @@ Answer compare_answer(const CompareRequest& command, const ComparedInputs& input
         Json entry = Json::object();
         if (layer.seen) entry["seen"] = seen_json(*layer.seen);
         if (layer.displacement) entry["displacement_px"] = displacement_json(*layer.displacement);
+        if (layer.bounds) entry["bounds_px"] = bounds_json(*layer.bounds);
         answer.fields["layers"][layer.layer] = entry;
     }
     if (!comparison.worst.channel.empty())

@@ -60,6 +60,7 @@ const Channel* find_by_any_name(const Image& image, const std::string& name) {
 
 void require_same_channels(const Image& one, const Image& other, const std::string& only_where) {
     for (const Channel& channel : one.channels) {
+        if (channel.name == kBoundChannel) continue;  // it speaks of its own picture
         const Channel* match = find_by_any_name(other, channel.name);
         if (!match) refuse(channel.name, "only " + only_where + " has this channel");
         if (match->is_id() != channel.is_id())
@@ -132,6 +133,7 @@ const Channel* counterpart(const Image& image, const std::string& name, const Im
 std::vector<std::string> names_only_in(const Image& image, const Image& other) {
     std::vector<std::string> names;
     for (const Channel& channel : image.channels) {
+        if (channel.name == kBoundChannel) continue;
         const Channel* match = counterpart(image, channel.name, other);
         if (!match || match->is_id() != channel.is_id()) names.push_back(channel.name);
     }

@@ -12,9 +12,12 @@
 
 namespace trilens {
 
+/// The layer of proven bounds: it speaks of its own picture, and no other one need have it.
+inline constexpr const char* kBoundChannel = "bound";
+
 /// Throws InputError that names the first difference where the images differ in size, data window, channel
 /// names or channel types (float, id). The order of channels is free, and an older name (see seen_channel) is
-/// the same channel as the newer one. Also where a channel has not one value per pixel of the data window.
+/// the same channel as the newer one, and kBoundChannel may stand in one alone. Also where a channel has not one value per pixel of the data window.
 void require_comparable(const Image& reference, const Image& test);
 
 /// Per pixel of the data window 1 where it takes part, else 0. Without `mask_object` all do; with it those

@@ -34,8 +34,8 @@ enum class Shift : std::uint8_t {
 /// Statistics over the pixels that are kFound, and the vectors themselves, per pixel of the data window. What
 /// could not be measured is in no mean, so every mean is to be read with its losses, which are counted in
 /// both directions, and with the unmeasured. Each pixel of the test that shows the layer is in one of pixels,
-/// lost and unmeasured. At folds of the reference (position_field.h) displacements fall more slowly than elsewhere:
-/// the mean off the folds shows the order of the surface alone.
+/// lost and unmeasured. At folds of the reference (position_field.h) displacements fall more slowly than
+/// elsewhere: the mean off the folds shows the order of the surface alone.
 struct Displacement {
     std::optional<Summary> summary;  // of the shifts' lengths, pixels; none where no pixel was found
     std::size_t pixels = 0;          // found
@@ -86,5 +86,25 @@ void drop_other_images(Displacement& displacement, int width);
 
 inline constexpr double kOtherImage = 8;
 inline constexpr std::size_t kFewestNeighbours = 6;
+
+/// Proven bounds of the test's displacement (its channel "bound", of a certified picture) against what was
+/// measured. Checked are pixels with a bound above zero whose shift was found and is not in doubt: those in
+/// the middle of 5 x 5 pixels of the reference that show one triangle, or the environment, through one optic.
+/// There the shift is good to kBoundRoom.
+struct BoundCheck {
+    std::size_t pixels = 0;               // checked
+    std::size_t beyond = 0;               // those displaced by more than their bound and kBoundRoom
+    std::optional<double> excess;         // the largest shift less its bound, pixels; none: none was checked
+    std::optional<double> tightness_p50;  // median and
+    std::optional<double> tightness_max;  // largest of bound over shift, where that is over 0.01 px
+};
+
+/// What the test's bounds are worth, by measure_displacement() of the same images and layer. None where the
+/// test has no bounds or the layer shows no places. The bounds are of the exact surfaces: a reference that is
+/// not traced from them tells nothing.
+std::optional<BoundCheck> check_bounds(const Image& reference, const Image& test, const std::string& layer,
+                                       const Displacement& displacement);
+
+inline constexpr double kBoundRoom = 0.02;  // pixels
 
 }  // namespace trilens
