@@ -92,11 +92,10 @@ void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, V
 
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     const Material& material = scene.materials[scene.material[hit.triangle]];
-    const Vec3 base = base_colour(scene, hit);
-    if (material.unlit) return base;
+    const SeenAlong seen{&hit, &ray};
+    if (material.unlit) return texels_at(scene, seen).base;
     if (!is_plain(scene, hit)) {
         Vec3 light;
-        const SeenAlong seen{&hit, &ray};
         shade_rays(scene, {&seen, 1}, {&light, 1});
         return light;
     }
@@ -112,7 +111,7 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
                     kInversePi *
                     scene.caustic(
                         l, {frame.position, frame.geometric_normal, frame.normal, frame.shadow_start, {}});
-    return outgoing_radiance(look_at(scene, hit, base), {.matt = arriving + caustic});
+    return outgoing_radiance(look_at(scene, hit, texels_at(scene, seen)), {.matt = arriving + caustic});
 }
 
 Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {

@@ -14,6 +14,7 @@
 #include "base/raymesh/segments.h"
 #include "base/raymesh/triangle_scene.h"
 #include "shade/lights/light_sample.h"
+#include "shade/material_maps.h"
 #include "shade/metallic_roughness.h"
 #include "shade/receiver.h"
 #include "shade/texture_filter.h"
@@ -26,13 +27,14 @@ struct ShadeScene {
     const TriangleScene* triangles = nullptr;
     std::vector<Id> material;              // index into materials
     std::vector<std::array<Vec2, 3>> uvs;  // v upward from the picture's bottom; unset triangles hold zeros
-    std::vector<std::array<Vec3, 3>> normals;  // unit per corner; all zero: the triangle is flat
+    std::vector<std::array<Vec2, 3>> second_uvs;  // of textures whose sampler says so
+    std::vector<std::array<Vec3, 3>> normals;     // unit per corner; all zero: the triangle is flat
     std::vector<Material> materials;
     std::vector<Light> lights;
     Background background;
-    // Mip maps of the materials' base colour textures, by material, and of the background's picture; null
-    // where it has none. Set by prepare_textures(); without them nothing is filtered.
-    std::vector<std::shared_ptr<const MipMap>> base_color_maps;
+    // Mip maps of the materials' pictures, by material, and of the background's, null where it has none. Set
+    // by prepare_textures(); without them nothing is filtered.
+    std::vector<MaterialMips> mips;
     std::shared_ptr<const MipMap> environment_map;
     // By light: what stands for the background where the light is one of it, else null; set by
     // prepare_lights(), without which an environment's light must not be asked for.
@@ -89,9 +91,9 @@ struct RayDifferential {
 struct SeenAlong {
     const Hit* hit = nullptr;  // unset: nothing but the background
     const Ray* ray = nullptr;
-    // Base colour of the hit, or radiance of the background, where it stands for more than one point of them;
-    // null: that of the point itself.
-    const Vec3* base = nullptr;
+    // What the material's pictures, or the background's, show where the hit stands for more than one point of
+    // them; null: as texels_at has it.
+    const MapTexels* texels = nullptr;
     const RayDifferential* differential = nullptr;  // where textures are averaged; null: it stands for itself
     // Sides of the parallelogram on the surface, around the hit, over which caustics are averaged; null: the
     // point alone.
@@ -110,10 +112,9 @@ struct ReachingLight {
     Vec3 caustic{0};
 };
 
-/// What the rays show: each hit's shade (the same bits as shade_hit's where neither base nor differential is
-/// given), or the
-/// background. light.size() == seen.size(). `reaching`: gets the light at each hit that is lit, if it is not
-/// empty; then it has that size, too.
+/// What the rays show: each hit's shade (the same bits as shade_hit's where neither texels nor differential
+/// is given), or the background. light.size() == seen.size(). `reaching`: gets the light at each hit that is
+/// lit, if it is not empty; then it has that size, too.
 void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light,
                 std::span<ReachingLight> reaching = {});
 
@@ -121,16 +122,18 @@ void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::s
 void find_reaching_light(const ShadeScene& scene, std::span<const SeenAlong> seen,
                          std::span<ReachingLight> reaching);
 
-/// What the surface there is like, for that base colour.
-SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const Vec3& base);
+/// What the surface there is like.
+SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const MapTexels& texels);
 
-/// The normal there that light comes to, by the material's normal map: `normal` and `toward_surface` (both
-/// world, the normal unit and on the side that is looked at) as the mesh has them. Tangents are the
+/// Normals at a point of a triangle; unit, on the side that is looked at.
+struct SurfaceNormals {
+    Vec3 shading{0}, geometric{0};  // the mesh's, between its corners; the triangle's plane's
+};
+
+/// The normal there that light comes to, where the material's normal map shows `in_map`. Tangents are the
 /// triangle's own derivatives by u and v, at right angles to the normal.
-Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const Vec3& normal, const Vec3& geometric_normal);
-
-/// Share of ambient and environment light that the material's occlusion map lets arrive there.
-double occlusion_at(const ShadeScene& scene, const Hit& hit);
+Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const SurfaceNormals& surface,
+                   const Vec3& in_map);
 
 /// Whether the surface there is matt and has no map but its colours'.
 bool is_plain(const ShadeScene& scene, const Hit& hit);
@@ -138,15 +141,15 @@ bool is_plain(const ShadeScene& scene, const Hit& hit);
 /// Whether the material there is lit: else it shows its base colour.
 bool is_lit(const ShadeScene& scene, const Hit& hit);
 
-/// Whether the colour there comes from a picture: of the material, or of the background where nothing is hit.
+/// Whether what is seen there is of pictures: of the material, or of the background where nothing is hit.
 bool has_texture(const ShadeScene& scene, const Hit& hit);
 
-/// Base colour at a hit.
-Vec3 base_colour(const ShadeScene& scene, const Hit& hit);
+/// Whether pictures say how light comes to the surface there, not just what colour it has.
+bool has_light_maps(const ShadeScene& scene, const Hit& hit);
 
-/// Base colour of what is seen, or the background's radiance: the mean over the ray's footprint where it has
-/// a differential.
-Vec3 base_colour(const ShadeScene& scene, const SeenAlong& seen);
+/// What the pictures show there, or the background's radiance: means over the ray's footprint where it has a
+/// differential. Of `seen` no texels are asked for.
+MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen);
 
 /// Reflectance of a polished metal by Schlick's approximation, as glTF has it:
 /// f0 + (1 - f0) (1 - cos)^5, cos the cosine of incidence in 0..1.

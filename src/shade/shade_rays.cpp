@@ -85,7 +85,7 @@ std::uint64_t number_of_light(std::size_t light, Reach reach) {
 /// A lane whose surface is no plain one.
 struct ViewedLane {
     ViewedSurface surface;
-    double occlusion = 1;
+    MapTexels texels;
     ArrivedLight arrived;
 };
 
@@ -205,11 +205,12 @@ void Shaded::find_viewed(ShadeBatch::Bits wanted) {
         const Hit& hit = *seen[i]->hit;
         if (is_plain(scene, hit)) return;
         viewed |= Segments::bit(i);
-        const Vec3 normal = mapped_normal(scene, hit, batch.normal.get(i), batch.geometric_normal.get(i));
+        const MapTexels texels = seen[i]->texels ? *seen[i]->texels : texels_at(scene, *seen[i]);
+        const Vec3 normal =
+            mapped_normal(scene, hit, {batch.normal.get(i), batch.geometric_normal.get(i)}, texels.normal);
         batch.normal.set(i, normal);
         const Vec3 view = -normalize_or_zero(batch.toward.get(i));
-        viewed_lane[i] = {
-            {normal, view, look_at(scene, hit, Vec3(1)).roughness}, occlusion_at(scene, hit), {}};
+        viewed_lane[i] = {{normal, view, look_at(scene, hit, texels).roughness}, texels, {}};
     });
 }
 
@@ -224,7 +225,10 @@ void Shaded::add_viewed(std::size_t l, std::size_t sample, ShadeBatch::Bits lit)
         ArrivedLight one = arrived_from(lane.surface, at.toward, irradiance, at.spread);
         if (is_dome(light)) {  // its reflection comes by add_lobe
             one.glossy = one.glossy_grazing = Vec3(0);
-            one *= lane.occlusion;
+            one *= lane.texels.occlusion;
+        } else {  // the mean of cosines is the mean normal's, which is shorter than 1
+            one.matt *= lane.texels.normal_length;
+            one.matt_grazing *= lane.texels.normal_length;
         }
         lane.arrived += one;
     });
@@ -243,7 +247,7 @@ void Shaded::add_lobe(std::size_t l, std::size_t i) {
         const Segments::Bits hidden = shadows && segments.count > 0 ? scene.occluded(segments) : 0;
         for_each_of(segments.all() & ~hidden, [&](std::size_t s) {
             const Vec3 radiance =
-                lane.occlusion * dome_radiance(scene, light, direction[s].toward, direction[s].side);
+                lane.texels.occlusion * dome_radiance(scene, light, direction[s].toward, direction[s].side);
             lane.arrived.glossy += direction[s].glossy * radiance;
             lane.arrived.glossy_grazing += direction[s].grazing * radiance;
         });
@@ -297,12 +301,15 @@ void Shaded::shade(std::span<Vec3> light) {
     arrive();
     for (std::size_t i = 0; i < batch.count; ++i) {
         const Hit& hit = *seen[i]->hit;
-        const Vec3 base = seen[i]->base ? *seen[i]->base : base_colour(scene, *seen[i]);
+        const bool is_viewed = (viewed & Segments::bit(i)) != 0;
+        const MapTexels texels = seen[i]->texels ? *seen[i]->texels
+                                 : is_viewed     ? viewed_lane[i].texels
+                                                 : texels_at(scene, *seen[i]);
         if (!is_lit(scene, hit)) {
-            light[answer[i]] = base;
+            light[answer[i]] = texels.base;
             continue;
         }
-        SurfaceLook look = look_at(scene, hit, base);
+        SurfaceLook look = look_at(scene, hit, texels);
         light[answer[i]] = outgoing_radiance(look, arrived(i));
         if (caustic[i] == Vec3(0)) continue;
         look.emissive = Vec3(0);
@@ -330,7 +337,7 @@ void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::s
     };
     for (std::size_t i = 0; i < seen.size(); ++i) {
         if (!seen[i].hit->seen()) {
-            light[i] = seen[i].base ? *seen[i].base : base_colour(scene, seen[i]);
+            light[i] = seen[i].texels ? seen[i].texels->base : texels_at(scene, seen[i]).base;
             continue;
         }
         shaded.add(seen[i], i);

@@ -1,4 +1,4 @@
-// Base colours and backgrounds, averaged over the footprints of rays.
+// Materials' pictures and backgrounds, averaged over the footprints of rays.
 // Source: Igehy, Tracing Ray Differentials, SIGGRAPH 1999 (transfer of a differential to a plane).
 #include <algorithm>
 #include <cmath>
@@ -12,22 +12,26 @@ const Material& material_of(const ShadeScene& scene, const Hit& hit) {
     return scene.materials[scene.material[hit.triangle]];
 }
 
-Vec2 uv_at(const ShadeScene& scene, const Hit& hit) {
-    if (hit.triangle >= scene.uvs.size()) return Vec2(0);
-    const std::array<Vec2, 3>& uv = scene.uvs[hit.triangle];
+/// uv of the triangle's corners in the set that a texture is of; null: there are none.
+const std::array<Vec2, 3>* uvs_of(const ShadeScene& scene, Id triangle, const TextureSampler& sampler) {
+    const auto& set = sampler.uv_set == 0 ? scene.uvs : scene.second_uvs;
+    return triangle < set.size() ? &set[triangle] : nullptr;
+}
+
+Vec2 uv_at(const ShadeScene& scene, const Hit& hit, const TextureSampler& sampler) {
+    const std::array<Vec2, 3>* of_corners = uvs_of(scene, hit.triangle, sampler);
+    if (!of_corners) return Vec2(0);
+    const std::array<Vec2, 3>& uv = *of_corners;
     return (1 - hit.barycentric.x - hit.barycentric.y) * uv[0] + hit.barycentric.x * uv[1] +
            hit.barycentric.y * uv[2];
 }
 
-Vec3 look_up(const ShadeScene& scene, const Hit& hit, const PlacedTexture& texture) {
-    return lookup(*texture.picture, texture.sampler, texture.sampler.place(uv_at(scene, hit)));
-}
-
 /// How uv at the hit change along the sides of the ray's footprint.
-Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen) {
-    if (seen.hit->triangle >= scene.uvs.size()) return {Vec2(0), Vec2(0)};
+Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen, const TextureSampler& sampler) {
+    const std::array<Vec2, 3>* of_corners = uvs_of(scene, seen.hit->triangle, sampler);
+    if (!of_corners) return {Vec2(0), Vec2(0)};
+    const std::array<Vec2, 3>& uv = *of_corners;
     const IdTriple& corner = scene.triangles->triangles[seen.hit->triangle];
-    const std::array<Vec2, 3>& uv = scene.uvs[seen.hit->triangle];
     const Vec3& a = scene.triangles->points[corner[0]];
     const Vec3 b = scene.triangles->points[corner[1]] - a, c = scene.triangles->points[corner[2]] - a;
     const Vec3 normal = cross(b, c);
@@ -43,6 +47,41 @@ Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen) {
     return footprint;
 }
 
+/// A picture where a ray meets the surface; the mean over the ray's footprint where there are `mips`.
+Vec3 look_up(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips,
+             const PlacedTexture& texture) {
+    const TextureSampler& sampler = texture.sampler;
+    const Vec2 place = sampler.place(uv_at(scene, *seen.hit, sampler));
+    if (!mips) return lookup(*texture.picture, sampler, place);
+    Footprint footprint = uv_footprint(scene, seen, sampler);
+    for (Vec2& side : footprint) side = sampler.step(side);
+    return lookup(*mips, sampler, place, footprint);
+}
+
+/// A normal map there: its own normal and how long the mean of those in the footprint is.
+void look_up_normal(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips, MapTexels& texels) {
+    const Material& material = material_of(scene, *seen.hit);
+    Vec3 normal;
+    if (mips) {
+        normal = look_up(scene, seen, mips, material.normal_texture);
+        texels.normal_length = std::min(length(normal), 1.0);
+    } else {
+        const Vec3 texel = look_up(scene, seen, nullptr, material.normal_texture);
+        normal = {material.normal_scale * (2 * texel.x - 1), material.normal_scale * (2 * texel.y - 1),
+                  2 * texel.z - 1};
+    }
+    normal = normalize_or_zero(normal);
+    if (normal != Vec3(0)) texels.normal = normal;
+}
+
+/// The normals that others of the same picture and scale have, if any.
+std::shared_ptr<const MipMap> normals_like(const MaterialMips& own, const std::vector<MaterialMips>& others) {
+    for (const MaterialMips& other : others)
+        if (other.normal_picture == own.normal_picture && other.normal_scale == own.normal_scale)
+            return other.normal;
+    return nullptr;
+}
+
 /// A direction as the background's picture lies.
 Vec3 turned(const Background& background, const Vec3& v) {
     const double c = background.rotate_cos, s = background.rotate_sin;
@@ -52,20 +91,34 @@ Vec3 turned(const Background& background, const Vec3& v) {
 }  // namespace
 
 void prepare_textures(ShadeScene& scene) {
-    std::vector<std::shared_ptr<const MipMap>> before = std::move(scene.base_color_maps);
-    before.push_back(scene.environment_map);
+    const std::vector<MaterialMips> before = std::move(scene.mips);
+    std::vector<std::shared_ptr<const MipMap>> known{scene.environment_map};
+    for (const MaterialMips& one : before)
+        known.insert(known.end(), {one.base_color, one.metallic_roughness, one.occlusion, one.emissive});
     const auto map_of = [&](const std::shared_ptr<const Texture>& texture) {
         std::shared_ptr<const MipMap> map;
         if (!texture) return map;
-        const auto found = std::find_if(before.begin(), before.end(),
+        const auto found = std::find_if(known.begin(), known.end(),
                                         [&](const auto& one) { return one && one->texture() == texture; });
-        map = found != before.end() ? *found : std::make_shared<const MipMap>(texture);
-        before.push_back(map);
+        map = found != known.end() ? *found : std::make_shared<const MipMap>(texture);
+        known.push_back(map);
         return map;
     };
-    scene.base_color_maps.clear();
-    for (const Material& material : scene.materials)
-        scene.base_color_maps.push_back(map_of(material.base_color_texture));
+    scene.mips.clear();
+    for (const Material& material : scene.materials) {
+        MaterialMips mips;
+        mips.base_color = map_of(material.base_color_texture);
+        mips.metallic_roughness = map_of(material.metallic_roughness_texture.picture);
+        mips.occlusion = map_of(material.occlusion_texture.picture);
+        mips.emissive = map_of(material.emissive_texture.picture);
+        mips.normal_picture = material.normal_texture.picture;
+        mips.normal_scale = material.normal_scale;
+        if (mips.normal_picture) mips.normal = normals_like(mips, before);
+        if (mips.normal_picture && !mips.normal) mips.normal = normals_like(mips, scene.mips);
+        if (mips.normal_picture && !mips.normal)
+            mips.normal = std::make_shared<const MipMap>(normals_of(*mips.normal_picture, mips.normal_scale));
+        scene.mips.push_back(std::move(mips));
+    }
     scene.environment_map = map_of(scene.background.environment);
 }
 
@@ -74,15 +127,15 @@ bool is_lit(const ShadeScene& scene, const Hit& hit) {
 }
 
 bool has_texture(const ShadeScene& scene, const Hit& hit) {
-    return hit.seen() ? material_of(scene, hit).base_color_texture != nullptr
-                      : scene.background.environment != nullptr;
+    if (!hit.seen()) return scene.background.environment != nullptr;
+    const Material& material = material_of(scene, hit);
+    return material.base_color_texture || has_light_maps(scene, hit) || material.emissive_texture.picture;
 }
 
-Vec3 base_colour(const ShadeScene& scene, const Hit& hit) {
+bool has_light_maps(const ShadeScene& scene, const Hit& hit) {
     const Material& material = material_of(scene, hit);
-    if (!material.base_color_texture) return material.base_color_factor;
-    return material.base_color_factor * lookup(*material.base_color_texture, material.base_color_sampler,
-                                               material.base_color_sampler.place(uv_at(scene, hit)));
+    return material.normal_texture.picture || material.metallic_roughness_texture.picture ||
+           material.occlusion_texture.picture;
 }
 
 Vec3 shade_background(const Background& background, const Vec3& direction) {
@@ -90,32 +143,30 @@ Vec3 shade_background(const Background& background, const Vec3& direction) {
     return lookup_latitude_longitude(*background.environment, turned(background, direction));
 }
 
-SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const Vec3& base) {
+SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const MapTexels& texels) {
     const Material& material = material_of(scene, hit);
     SurfaceLook look;
-    look.base = base;
-    look.metallic = material.metallic_factor;
-    look.roughness = material.roughness_factor;
+    look.base = texels.base;
+    look.metallic = material.metallic_factor * texels.metallic;
+    look.roughness = material.roughness_factor * texels.roughness;
+    if (texels.normal_length < 1) look.roughness = widened_roughness(look.roughness, texels.normal_length);
     look.ior = material.ior;
     look.specular = material.specular_factor;
     look.specular_color = material.specular_color_factor;
-    look.emissive = material.emissive_factor;
+    look.emissive = material.emissive_factor * texels.emissive;
     look.brdf = material.is_matt() ? Brdf::kLambert : Brdf::kMetallicRoughness;
-    if (const PlacedTexture& both = material.metallic_roughness_texture; both.picture) {
-        const Vec3 seen = look_up(scene, hit, both);
-        look.roughness *= std::clamp(seen.y, 0.0, 1.0);
-        look.metallic *= std::clamp(seen.z, 0.0, 1.0);
-    }
-    if (material.emissive_texture.picture) look.emissive *= look_up(scene, hit, material.emissive_texture);
     return look;
 }
 
-Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const Vec3& normal,
-                   const Vec3& geometric_normal) {
+Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const SurfaceNormals& surface,
+                   const Vec3& in_map) {
     const Material& material = material_of(scene, hit);
-    if (!material.normal_texture.picture || hit.triangle >= scene.uvs.size()) return normal;
+    const Vec3& normal = surface.shading;
+    if (!material.normal_texture.picture) return normal;
+    const std::array<Vec2, 3>* of_corners = uvs_of(scene, hit.triangle, material.normal_texture.sampler);
+    if (!of_corners) return normal;
+    const std::array<Vec2, 3>& uv = *of_corners;
     const IdTriple& corner = scene.triangles->triangles[hit.triangle];
-    const std::array<Vec2, 3>& uv = scene.uvs[hit.triangle];
     const Vec3& a = scene.triangles->points[corner[0]];
     const Vec3 b = scene.triangles->points[corner[1]] - a, c = scene.triangles->points[corner[2]] - a;
     const Vec2 ub = uv[1] - uv[0], uc = uv[2] - uv[0];
@@ -124,23 +175,13 @@ Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const Vec3& normal,
     // The point's derivatives by u and by v.
     const Vec3 along_u = (uc.y * b - ub.y * c) / area, along_v = (ub.x * c - uc.x * b) / area;
     // The map is of the front, where the corners turn anticlockwise.
-    const double side = dot(cross(b, c), geometric_normal) < 0 ? -1 : 1;
+    const double side = dot(cross(b, c), surface.geometric) < 0 ? -1 : 1;
     const Vec3 front = side * normal;
     const Vec3 tangent = normalize_or_zero(along_u - dot(along_u, front) * front);
     Vec3 bitangent = cross(front, tangent);
     if (dot(bitangent, along_v) < 0) bitangent = -bitangent;
-    const Vec3 texel = look_up(scene, hit, material.normal_texture);
-    const Vec3 mapped =
-        normalize_or_zero(material.normal_scale * (2 * texel.x - 1) * tangent +
-                          material.normal_scale * (2 * texel.y - 1) * bitangent + (2 * texel.z - 1) * front);
+    const Vec3 mapped = normalize_or_zero(in_map.x * tangent + in_map.y * bitangent + in_map.z * front);
     return mapped == Vec3(0) ? normal : side * mapped;
-}
-
-double occlusion_at(const ShadeScene& scene, const Hit& hit) {
-    const Material& material = material_of(scene, hit);
-    if (!material.occlusion_texture.picture) return 1;
-    const double seen = std::clamp(look_up(scene, hit, material.occlusion_texture).x, 0.0, 1.0);
-    return 1 + material.occlusion_strength * (seen - 1);
 }
 
 bool is_plain(const ShadeScene& scene, const Hit& hit) {
@@ -154,22 +195,39 @@ Vec3 background_radiance(const Background& background, const MipMap& map, const 
                                      {turned(background, sides[0]), turned(background, sides[1])});
 }
 
-Vec3 base_colour(const ShadeScene& scene, const SeenAlong& seen) {
+MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen) {
+    MapTexels texels;
     if (!seen.hit->seen()) {
-        if (!seen.differential || !scene.environment_map)
-            return shade_background(scene.background, seen.ray->direction);
-        return background_radiance(scene.background, *scene.environment_map, seen.ray->direction,
-                                   seen.differential->direction);
+        texels.base = seen.differential && scene.environment_map
+                          ? background_radiance(scene.background, *scene.environment_map, seen.ray->direction,
+                                                seen.differential->direction)
+                          : shade_background(scene.background, seen.ray->direction);
+        return texels;
     }
     const Id index = scene.material[seen.hit->triangle];
-    if (!seen.differential || index >= scene.base_color_maps.size() || !scene.base_color_maps[index])
-        return base_colour(scene, *seen.hit);
     const Material& material = scene.materials[index];
-    const TextureSampler& sampler = material.base_color_sampler;
-    Footprint footprint = uv_footprint(scene, seen);
-    for (Vec2& side : footprint) side = sampler.step(side);
-    return material.base_color_factor *
-           lookup(*scene.base_color_maps[index], sampler, sampler.place(uv_at(scene, *seen.hit)), footprint);
+    const MaterialMips* mips = seen.differential && index < scene.mips.size() ? &scene.mips[index] : nullptr;
+    texels.base = material.base_color_factor;
+    if (material.base_color_texture)
+        texels.base *= look_up(scene, seen, mips ? mips->base_color.get() : nullptr,
+                               {material.base_color_texture, material.base_color_sampler});
+    if (material.unlit) return texels;
+    if (const PlacedTexture& both = material.metallic_roughness_texture; both.picture) {
+        const Vec3 texel = look_up(scene, seen, mips ? mips->metallic_roughness.get() : nullptr, both);
+        texels.roughness = std::clamp(texel.y, 0.0, 1.0);
+        texels.metallic = std::clamp(texel.z, 0.0, 1.0);
+    }
+    if (material.normal_texture.picture)
+        look_up_normal(scene, seen, mips ? mips->normal.get() : nullptr, texels);
+    if (material.occlusion_texture.picture) {
+        const Vec3 texel =
+            look_up(scene, seen, mips ? mips->occlusion.get() : nullptr, material.occlusion_texture);
+        texels.occlusion = 1 + material.occlusion_strength * (std::clamp(texel.x, 0.0, 1.0) - 1);
+    }
+    if (material.emissive_texture.picture)
+        texels.emissive =
+            look_up(scene, seen, mips ? mips->emissive.get() : nullptr, material.emissive_texture);
+    return texels;
 }
 
 }  // namespace trilens

@@ -154,6 +154,30 @@ TEST_CASE("glTF accessors: sparse or normalised or out of bounds", "[scene]") {
     CHECK(mesh.uvs[2] == Vec2(0, 0));
 }
 
+TEST_CASE("TEXCOORD_0 and TEXCOORD_1 are two sets of uv, and materials say which", "[scene]") {
+    const std::string folder = scratch_dir("scene_gltf_two_uvs");
+    Square square;
+    square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_1":2},"indices":1,"material":0)";
+    square.more = R"(,"materials":[{"occlusionTexture":{"index":0,"texCoord":1},
+        "normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"texCoord":1}}},
+        "emissiveFactor":[1,1,1],"emissiveTexture":{"index":0,"texCoord":3},
+        "pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],
+        "textures":[{"source":0}],"images":[{"uri":"a.png"}])";
+    const std::string file = write_square(folder, gltf_text(square));
+    const PolygonMesh mesh = polygons_of_gltf(read_gltf(file), file, nullptr);
+    CHECK(mesh.uvs[1] == Vec2(0, 0));
+    CHECK(mesh.second_uvs[1] == Vec2(1, 1));
+    CHECK(mesh.second_uvs[2] == Vec2(0, 0));
+    const GltfModel model = read_gltf(file);
+    const Json& written = model.materials[0].written;
+    CHECK(written.at("occlusionTexture").at("texCoord") == 1);
+    CHECK(written.at("normalTexture").at("texCoord") == 1);
+    CHECK(!written.at("baseColorTexture").contains("texCoord"));
+    CHECK(!written.at("emissiveTexture").contains("texCoord"));
+    CHECK(model.warnings ==
+          std::vector<std::string>{"sets of uv beyond TEXCOORD_1 are not read: the first is taken for them"});
+}
+
 TEST_CASE("what a glTF has beside meshes and base colours is told of", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_left_out");
     Square square;

@@ -26,7 +26,7 @@ Scene full_scene() {
     material.base_color_texture = texture(1);
     scene.materials = {material};
     Mesh mesh;
-    mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {0}};
+    mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {{}}, {0}};
     mesh.primitive = Primitive{};
     mesh.cage = {{{1, 2, 3}}, {3}, {0, 0, 0}, {}, {}, {0}, {2}, {1.5}, {0}, {2.5}, {0}, {}};
     scene.meshes = {mesh, mesh};
@@ -52,6 +52,7 @@ std::vector<Change> changes_of_looks() {
             [](Scene& s) { s.materials[0].base_color_factor.y = 0.25; },
             [](Scene& s) { s.materials[0].base_color_texture = nullptr; },
             [](Scene& s) { s.materials[0].base_color_texture = texture(2); },
+            [](Scene& s) { s.materials[0].base_color_sampler.uv_set = 1; },
             [](Scene& s) { s.materials[0].unlit = true; },
             [](Scene& s) { s.materials[0].metallic_factor = 1; },
             [](Scene& s) { s.materials[0].roughness_factor = 1; },

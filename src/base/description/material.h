@@ -37,6 +37,7 @@ struct TextureSampler {
     Wrap wrap_s = Wrap::kRepeat, wrap_t = Wrap::kRepeat;
     // The place of uv on the picture is at_zero + u along_u + v along_v; both v upward from the bottom.
     Vec2 at_zero{0}, along_u{1, 0}, along_v{0, 1};
+    int uv_set = 0;  // of the mesh's two: 0 or 1
 
     Vec2 place(const Vec2& uv) const { return at_zero + step(uv); }
     /// How the place moves with uv.

@@ -54,6 +54,7 @@ void draw_inside(const Hit& inside, Hit& hit) {
 struct SeenThere {
     Hit hit;
     Ray ray;
+    Vec2 place{0};  // on the film
 };
 
 /// One contribution to a fragment, with what its samples see.
@@ -90,12 +91,15 @@ class SpreadContribution {
     /// The corners, as numbers in corners(); fewer than kCorners where some see nothing by its map, or it has
     /// one sample.
     std::span<const std::uint8_t> corner_numbers() const { return {numbers_.data(), number_count_}; }
-    /// Mean base colour over its samples, or of the background; none: that of the shaded point will do.
-    std::optional<Vec3> mean_base() const;
+    /// What pictures show in the mean over its samples; none: what they do at the shaded point.
+    std::optional<MapTexels> mean_texels() const;
+    /// The same over one sample's part of the pixel; none: as at() there shows it.
+    std::optional<MapTexels> sample_texels(const SeenThere& there) const;
     /// Sides of the parallelogram on the surface that its samples stand for; null where it is not known.
     const std::array<Vec3, 2>* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
   private:
+    std::optional<MapTexels> texels_over(const SeenThere& there, const std::array<Vec2, 2>& sides) const;
     void find_footprint();
     void find_corners();
     void find_spread();
@@ -116,11 +120,11 @@ class SpreadContribution {
 
 std::optional<SeenThere> SpreadContribution::at(const Vec2& place) const {
     const Ray ray = map_.at(place);
-    if (!contribution_.seen.hit->seen()) return SeenThere{{}, ray};
+    if (!contribution_.seen.hit->seen()) return SeenThere{{}, ray, place};
     const std::optional<Hit> hit = meet_plane(shading_.world.objects, contribution_.seen.hit->triangle, ray);
     if (!hit) return std::nullopt;
     // Samples of neighbouring facets see the same triangle; this facet's map, continued, may miss it.
-    SeenThere there{*hit, ray};
+    SeenThere there{*hit, ray, place};
     draw_inside(*contribution_.seen.hit, there.hit);
     return there;
 }
@@ -202,19 +206,30 @@ void SpreadContribution::find_mean_length() {
         contribution_.mean_length = there->hit.t * length(there->ray.direction);
 }
 
-std::optional<Vec3> SpreadContribution::mean_base() const {
-    if (!map_.mesh || !has_texture(shading_.world.shading, *contribution_.seen.hit)) return std::nullopt;
-    const std::optional<SeenThere> there = at(centroid_);
-    if (!there) return std::nullopt;
-    const RayDifferential by_pixel = map_.differential(centroid_);
+std::optional<MapTexels> SpreadContribution::texels_over(const SeenThere& there,
+                                                         const std::array<Vec2, 2>& sides) const {
+    const RayDifferential by_pixel = map_.differential(there.place);
     RayDifferential differential;
     for (std::size_t k = 0; k < 2; ++k)
         for (int c = 0; c < 2; ++c) {
             const std::size_t of = static_cast<std::size_t>(c);
-            differential.origin[k] += spread_[k][c] * by_pixel.origin[of];
-            differential.direction[k] += spread_[k][c] * by_pixel.direction[of];
+            differential.origin[k] += sides[k][c] * by_pixel.origin[of];
+            differential.direction[k] += sides[k][c] * by_pixel.direction[of];
         }
-    return base_colour(shading_.world.shading, {&there->hit, &there->ray, nullptr, &differential});
+    return texels_at(shading_.world.shading, {&there.hit, &there.ray, nullptr, &differential});
+}
+
+std::optional<MapTexels> SpreadContribution::mean_texels() const {
+    if (!map_.mesh || !has_texture(shading_.world.shading, *contribution_.seen.hit)) return std::nullopt;
+    const std::optional<SeenThere> there = at(centroid_);
+    if (!there) return std::nullopt;
+    return texels_over(*there, spread_);
+}
+
+std::optional<MapTexels> SpreadContribution::sample_texels(const SeenThere& there) const {
+    if (!has_light_maps(shading_.world.shading, there.hit)) return std::nullopt;
+    const double side = 1.0 / shading_.side;
+    return texels_over(there, {Vec2(side, 0), Vec2(0, side)});
 }
 
 /// Contributions of several fragments, shaded together.
@@ -232,7 +247,8 @@ class FragmentContributions {
     void shade();
 
   private:
-    void even_out(std::span<const ReachingLight> centre, std::span<const Vec3> base, std::span<Vec3> light);
+    void even_out(std::span<const ReachingLight> centre, std::span<const MapTexels> texels,
+                  std::span<Vec3> light);
     ArrivedLight mean_arrived(const SpreadContribution& contribution) const;
 
     const FragmentShading& shading_;
@@ -255,9 +271,10 @@ double corner_share(int side) {
 
 /// From the light at the shaded points to means over the samples. Samples are lit one by one where other
 /// lights reach the outermost than the shaded point, or light changes by more than a mean can tell.
-void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<const Vec3> base,
+void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<const MapTexels> texels,
                                      std::span<Vec3> light) {
     std::array<SeenAlong, kMostShaded * kCorners> corners;
+    std::vector<MapTexels> corner_texels;  // where pictures say how light comes; stay in place
     std::size_t count = 0;
     const auto is_spread = [&](const SpreadContribution& one) {
         const Hit& hit = *one.contribution().seen.hit;
@@ -267,6 +284,10 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
         if (is_spread(one))
             for (const SeenThere& corner : one.corners()) {
                 corners[count] = {&corner.hit, &corner.ray};
+                if (const std::optional<MapTexels> of_sample = one.sample_texels(corner)) {
+                    corner_texels.reserve(corners.size());
+                    corners[count].texels = &corner_texels.emplace_back(*of_sample);
+                }
                 corners[count++].without_caustics = true;
             }
     std::array<ReachingLight, kMostShaded * kCorners> there;
@@ -277,7 +298,7 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
     for (std::size_t i = 0; i < waiting_.size(); ++i) {
         if (!is_spread(waiting_[i])) continue;
         const SurfaceLook look =
-            look_at(shading_.world.shading, *waiting_[i].contribution().seen.hit, base[i]);
+            look_at(shading_.world.shading, *waiting_[i].contribution().seen.hit, texels[i]);
         const std::span<const std::uint8_t> numbers = waiting_[i].corner_numbers();
         const std::size_t n = numbers.size();
         bool uneven = !look.is_matt() && look.roughness < kPolished;
@@ -312,8 +333,13 @@ ArrivedLight FragmentContributions::mean_arrived(const SpreadContribution& contr
         if (const std::optional<SeenThere> seen = contribution.at(contribution.place(s)))
             there.push_back(*seen);
     std::vector<SeenAlong> seen;
+    std::vector<MapTexels> texels;  // stay in place
     for (const SeenThere& one : there) {
         seen.push_back({&one.hit, &one.ray});
+        if (const std::optional<MapTexels> of_sample = contribution.sample_texels(one)) {
+            texels.reserve(there.size());
+            seen.back().texels = &texels.emplace_back(*of_sample);
+        }
         seen.back().without_caustics = true;
     }
     std::vector<ReachingLight> light(seen.size());
@@ -327,19 +353,19 @@ ArrivedLight FragmentContributions::mean_arrived(const SpreadContribution& contr
 void FragmentContributions::shade() {
     const std::size_t count = waiting_.size();
     std::array<SeenAlong, kMostShaded> seen;
-    std::array<Vec3, kMostShaded> base;
+    std::array<MapTexels, kMostShaded> texels;
     std::array<Vec3, kMostShaded> light;
     std::array<ReachingLight, kMostShaded> reaching{};
     for (std::size_t i = 0; i < count; ++i) {
         seen[i] = waiting_[i].contribution().seen;
-        const std::optional<Vec3> mean = waiting_[i].mean_base();
-        base[i] = mean ? *mean : base_colour(shading_.world.shading, seen[i]);
-        seen[i].base = &base[i];
+        const std::optional<MapTexels> mean = waiting_[i].mean_texels();
+        texels[i] = mean ? *mean : texels_at(shading_.world.shading, seen[i]);
+        seen[i].texels = &texels[i];
         seen[i].footprint = waiting_[i].footprint();
     }
     shade_rays(shading_.world.shading, std::span(seen).first(count), std::span(light).first(count),
                std::span(reaching).first(count));
-    even_out(std::span(reaching).first(count), std::span(base).first(count), std::span(light).first(count));
+    even_out(std::span(reaching).first(count), std::span(texels).first(count), std::span(light).first(count));
     for (std::size_t i = 0; i < count; ++i)
         add_light(shading_.world, waiting_[i].contribution(), light[i], shaded_[i]->colour);
     waiting_.clear();

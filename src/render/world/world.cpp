@@ -45,6 +45,7 @@ void append_object(World& world, Id id, const Mesh& mesh) {
         world.shading.material.push_back(mesh.object.material[t]);
     }
     append_where_given(mesh.object.uvs, world.objects.size() - count, world.shading.uvs);
+    append_where_given(mesh.object.second_uvs, world.objects.size() - count, world.shading.second_uvs);
     append_where_given(mesh.object.normals, world.objects.size() - count, world.shading.normals);
 }
 

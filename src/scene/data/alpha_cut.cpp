@@ -73,7 +73,8 @@ GridPolygon left_of(const GridPolygon& polygon, const GridPlace& a, const GridPl
 
 /// The part of one cell that is opaque; convex.
 GridPolygon opaque_part(long long x, long long y, const std::array<double, 4>& values) {
-    const std::array<GridPlace, 4> corners{GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)};
+    const std::array<GridPlace, 4> corners{GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1),
+                                           GridPlace(x, y + 1)};
     GridPolygon part;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t next = (k + 1) % 4;
@@ -156,10 +157,12 @@ class TriangleCut {
         return polygon;
     }
     bool meets(long long x, long long y) const {
-        return clipped({GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)}).size() > 2;
+        return clipped({GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)})
+                   .size() > 2;
     }
     void add_run(long long from, long long to, long long y) {
-        if (to > from) add({GridPlace(from, y), GridPlace(to, y), GridPlace(to, y + 1), GridPlace(from, y + 1)});
+        if (to > from)
+            add({GridPlace(from, y), GridPlace(to, y), GridPlace(to, y + 1), GridPlace(from, y + 1)});
     }
     void add(GridPolygon polygon) {
         polygon = clipped(std::move(polygon));
@@ -192,14 +195,15 @@ class MeshCutter {
         if (material.alpha_mode == AlphaMode::kOpaque) return keep(t);
         const double cutoff = material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : kBlendCutoff;
         const Texture* texture = material.base_color_texture.get();
-        if (!texture || texture->alpha.empty() || from_.uvs.empty() || !(material.alpha_factor > 0)) {
+        const auto& uvs = material.base_color_sampler.uv_set == 0 ? from_.uvs : from_.second_uvs;
+        if (!texture || texture->alpha.empty() || uvs.empty() || !(material.alpha_factor > 0)) {
             if (material.alpha_factor >= cutoff) return keep(t);
             ++done_.cut;
             return;
         }
         const Opacity opacity(material, cutoff);
         std::array<GridPlace, 3> corners;
-        for (std::size_t k = 0; k < 3; ++k) corners[k] = opacity.place(from_.uvs[t][k]);
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = opacity.place(uvs[t][k]);
         if (!(std::abs(across(corners[1] - corners[0], corners[2] - corners[0])) > 1e-12)) return keep(t);
         TriangleCut pieces(corners, opacity);
         if (pieces.is_too_fine()) {
@@ -215,12 +219,13 @@ class MeshCutter {
         to_.triangles.push_back(from_.triangles[t]);
         to_.material.push_back(from_.material[t]);
         if (!from_.uvs.empty()) to_.uvs.push_back(from_.uvs[t]);
+        if (!from_.second_uvs.empty()) to_.second_uvs.push_back(from_.second_uvs[t]);
         if (!from_.normals.empty()) to_.normals.push_back(from_.normals[t]);
     }
 
     void add(std::size_t t, const GridPolygon& piece, const TriangleCut& cut) {
         const auto first = static_cast<Id>(to_.points.size());
-        std::vector<Vec2> uvs;
+        std::vector<Vec2> uvs, second_uvs;
         std::vector<Vec3> normals;
         for (const GridPlace& place : piece) {
             const Vec2 weights = cut.weights(place);
@@ -230,7 +235,9 @@ class MeshCutter {
             const IdTriple& corner = from_.triangles[t];
             to_.points.push_back(
                 mix(from_.points[corner[0]], from_.points[corner[1]], from_.points[corner[2]]));
-            uvs.push_back(mix(from_.uvs[t][0], from_.uvs[t][1], from_.uvs[t][2]));
+            const auto mix_set = [&](const auto& set) { return mix(set[t][0], set[t][1], set[t][2]); };
+            if (!from_.uvs.empty()) uvs.push_back(mix_set(from_.uvs));
+            if (!from_.second_uvs.empty()) second_uvs.push_back(mix_set(from_.second_uvs));
             if (!from_.normals.empty())
                 normals.push_back(
                     normalize_or_zero(mix(from_.normals[t][0], from_.normals[t][1], from_.normals[t][2])));
@@ -239,7 +246,8 @@ class MeshCutter {
             const std::size_t b = cut.turns() ? k + 1 : k, c = cut.turns() ? k : k + 1;
             to_.triangles.push_back({first, first + static_cast<Id>(b), first + static_cast<Id>(c)});
             to_.material.push_back(from_.material[t]);
-            to_.uvs.push_back({uvs[0], uvs[b], uvs[c]});
+            if (!uvs.empty()) to_.uvs.push_back({uvs[0], uvs[b], uvs[c]});
+            if (!second_uvs.empty()) to_.second_uvs.push_back({second_uvs[0], second_uvs[b], second_uvs[c]});
             if (!from_.normals.empty()) to_.normals.push_back({normals[0], normals[b], normals[c]});
         }
     }

@@ -146,6 +146,8 @@ void SceneCheck::object(const Mesh& whole, const std::string& place) const {
         if (material >= scene_.materials.size()) fail(place + "/material", "names no material of the scene");
     require(mesh.uvs.empty() || mesh.uvs.size() == count, place + "/uvs",
             "needs one entry per triangle, or none");
+    require(mesh.second_uvs.empty() || mesh.second_uvs.size() == count, place + "/uvs1",
+            "needs one entry per triangle, or none");
     require(mesh.normals.empty() || mesh.normals.size() == count, place + "/normals",
             "needs one entry per triangle, or none");
 }

@@ -45,6 +45,9 @@ void add_triangle(const PolygonMesh& mesh, const std::array<std::size_t, 3>& cor
     object.triangles.push_back(points);
     if (!mesh.uvs.empty())
         object.uvs.push_back({mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]});
+    if (!mesh.second_uvs.empty())
+        object.second_uvs.push_back(
+            {mesh.second_uvs[corner[0]], mesh.second_uvs[corner[1]], mesh.second_uvs[corner[2]]});
     if (mesh.normals.empty()) return;
     std::array<Vec3, 3> normals;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -68,6 +71,7 @@ bool place(PolygonMesh& mesh, const Transform& transform) {
     if (mirrors(transform)) {
         reverse_after_first(mesh.cage.face_vertex_indices, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.uvs, mesh.cage.face_vertex_counts);
+        reverse_after_first(mesh.second_uvs, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.normals, mesh.cage.face_vertex_counts);
     }
     return true;

@@ -78,8 +78,9 @@ struct ObjectMesh {
     // Per triangle and corner; either empty or one entry per triangle.
     std::vector<std::array<Vec2, 3>>
         uvs;  // v upward from the picture's bottom, as OBJ; glTF's is turned on reading
-    std::vector<std::array<Vec3, 3>> normals;  // unit
-    std::vector<Id> material;                  // per triangle: index into Scene::materials
+    std::vector<std::array<Vec2, 3>> second_uvs;  // of textures that ask for the second set
+    std::vector<std::array<Vec3, 3>> normals;     // unit
+    std::vector<Id> material;                     // per triangle: index into Scene::materials
 };
 
 /// One entry of the file's `meshes`. Its index is the object id in images.

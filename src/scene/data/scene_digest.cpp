@@ -115,8 +115,8 @@ void add(const Background& background, Digest& digest) {
 }
 
 void add(const TextureSampler& sampler, Digest& digest) {
-    const auto& [wrap_s, wrap_t, at_zero, along_u, along_v] = sampler;
-    digest.add_all(wrap_s, wrap_t, at_zero, along_u, along_v);
+    const auto& [wrap_s, wrap_t, at_zero, along_u, along_v, uv_set] = sampler;
+    digest.add_all(wrap_s, wrap_t, at_zero, along_u, along_v, uv_set);
 }
 
 void add(const PlacedTexture& texture, Digest& digest) {
@@ -205,8 +205,8 @@ void add(const Mesh& mesh, Digest& digest) {
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
-    const auto& [points, triangles, uvs, corner_normals, materials] = object;
-    digest.add_all(points, triangles, uvs, corner_normals, materials);
+    const auto& [points, triangles, uvs, second_uvs, corner_normals, materials] = object;
+    digest.add_all(points, triangles, uvs, second_uvs, corner_normals, materials);
     digest.add(primitive.has_value());
     if (primitive) add(*primitive, digest);
     add(cage, digest);

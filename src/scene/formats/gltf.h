@@ -17,7 +17,6 @@ namespace trilens {
 struct GltfMaterial {
     Material material;  // without its texture
     int image = -1;     // base colour picture: index into GltfModel::images, or -1
-    int uv_set = 0;     // TEXCOORD_n that goes with it
     /// As a scene's material, with every key that glTF has for it, those too that scenes do not know; its
     /// pictures are {"image": index into GltfModel::images, "wrapS", "wrapT", "texCoord", "transform"}.
     Json written;
@@ -40,9 +39,10 @@ struct GltfMorphTarget {
 /// One primitive of a mesh with triangles, attributes per vertex.
 struct GltfPrimitive {
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;  // empty, or one per position
-    std::vector<Vec2> uvs;      // empty, or one per position; v downward as in glTF
-    std::vector<Vec4> colors;   // empty, or one per position: linear, red, green, blue, alpha
+    std::vector<Vec3> normals;     // empty, or one per position
+    std::vector<Vec2> uvs;         // empty, or one per position; v downward as in glTF
+    std::vector<Vec2> second_uvs;  // TEXCOORD_1, likewise
+    std::vector<Vec4> colors;      // empty, or one per position: linear, red, green, blue, alpha
     std::vector<IdTriple> triangles;
     int material = -1;
     std::vector<GltfMorphTarget> targets;

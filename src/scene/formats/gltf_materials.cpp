@@ -1,6 +1,7 @@
 // Materials of a glTF, in a scene's terms: metallic-roughness and the KHR_materials extensions.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -73,7 +74,6 @@ class MaterialReader {
         Json texture = read_texture(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture");
         if (!texture.is_null()) {
             out_.image = texture.at("image").get<int>();
-            out_.uv_set = texture.value("texCoord", 0);
             out_.written["baseColorTexture"] = std::move(texture);
         }
         out_.material.unlit = has("KHR_materials_unlit");
@@ -199,10 +199,12 @@ class MaterialReader {
         TextureSampler sampler;
         read_sampler(in.sampler, sampler, written);
         if (info.texCoord < 0) source_.fail(at(key), "texCoord is negative");
-        if (info.texCoord > 0) written["texCoord"] = info.texCoord;
+        int set = info.texCoord;
         const auto transform = info.extensions.find("KHR_texture_transform");
         if (transform != info.extensions.end())
-            read_transform(json_of_gltf(transform->second), at(key), sampler, written);
+            set = read_transform(json_of_gltf(transform->second), at(key), sampler, written).value_or(set);
+        if (set > 1) source_.warn("sets of uv beyond TEXCOORD_1 are not read: the first is taken for them");
+        if (set == 1) written["texCoord"] = sampler.uv_set = 1;
         if (key == "pbrMetallicRoughness/baseColorTexture") out_.material.base_color_sampler = sampler;
         return written;
     }
@@ -221,8 +223,9 @@ class MaterialReader {
         if (sampler.wrap_t != Wrap::kRepeat) written["wrapT"] = name_of(sampler.wrap_t);
     }
 
-    /// KHR_texture_transform.
-    void read_transform(const Json& given, const std::string& place, TextureSampler& sampler, Json& written) {
+    /// KHR_texture_transform; gives the set of uv that it asks for, if any.
+    std::optional<int> read_transform(const Json& given, const std::string& place, TextureSampler& sampler,
+                                      Json& written) {
         const std::string malformed = "KHR_texture_transform is malformed";
         const auto number = [&](const Json& value) {
             if (!value.is_number() || !(std::fabs(value.get<double>()) <= kLargestCoordinate))
@@ -244,12 +247,11 @@ class MaterialReader {
             transform.rotation = number(given.at("rotation"));
             written["transform"]["rotation"] = transform.rotation * kDegreesPerRadian;
         }
-        if (given.contains("texCoord")) {
-            const double set = number(given.at("texCoord"));
-            if (!(set >= 0 && set <= 64)) source_.fail(place, malformed);
-            written["texCoord"] = static_cast<int>(set);
-        }
         set_transform(transform, sampler);
+        if (!given.contains("texCoord")) return std::nullopt;
+        const double set = number(given.at("texCoord"));
+        if (!(set >= 0 && set <= 64)) source_.fail(place, malformed);
+        return static_cast<int>(set);
     }
 
     /// What a material has beside its base colour, for whoever takes nothing else.

@@ -99,6 +99,9 @@ class Appender {
         place_vertices(node, primitive);
         const auto base = static_cast<int>(mesh_.cage.points.size());
         mesh_.cage.points.insert(mesh_.cage.points.end(), positions_.begin(), positions_.end());
+        // What has no second set takes its first for it.
+        const bool has_second = !primitive.second_uvs.empty() || !mesh_.second_uvs.empty();
+        if (has_second && mesh_.second_uvs.empty()) mesh_.second_uvs = mesh_.uvs;
         for (const IdTriple& triangle : primitive.triangles) {
             IdTriple corners = triangle;
             if (mirrored_) std::swap(corners[1], corners[2]);
@@ -108,6 +111,10 @@ class Appender {
                 mesh_.cage.face_vertex_indices.push_back(base + static_cast<int>(vertex));
                 const Vec2 uv = primitive.uvs.empty() ? Vec2(0, 1) : primitive.uvs[vertex];
                 mesh_.uvs.push_back({uv.x, 1 - uv.y});
+                if (has_second) {
+                    const Vec2 second = primitive.second_uvs.empty() ? uv : primitive.second_uvs[vertex];
+                    mesh_.second_uvs.push_back({second.x, 1 - second.y});
+                }
                 mesh_.normals.push_back(normals_.empty() ? Vec3(0) : normals_[vertex]);
             }
         }

@@ -132,12 +132,16 @@ class Reader {
         result.material = checked(in.material, in_.materials.size(), place, "material");
         result.positions = vec3s(in.attributes.at("POSITION"));
         if (in.attributes.count("NORMAL") > 0) result.normals = vec3s(in.attributes.at("NORMAL"));
-        const int set =
-            result.material < 0 ? 0 : out_.materials[static_cast<std::size_t>(result.material)].uv_set;
-        const auto uvs = in.attributes.find("TEXCOORD_" + std::to_string(set));
-        if (uvs != in.attributes.end()) result.uvs = vec2s(uvs->second);
-        if ((!result.normals.empty() && result.normals.size() != result.positions.size()) ||
-            (!result.uvs.empty() && result.uvs.size() != result.positions.size()))
+        const auto uv_set = [&](const char* name) {
+            const auto uvs = in.attributes.find(name);
+            return uvs == in.attributes.end() ? std::vector<Vec2>() : vec2s(uvs->second);
+        };
+        result.uvs = uv_set("TEXCOORD_0");
+        result.second_uvs = uv_set("TEXCOORD_1");
+        const auto fits = [&](const auto& list) {
+            return list.empty() || list.size() == result.positions.size();
+        };
+        if (!fits(result.normals) || !fits(result.uvs) || !fits(result.second_uvs))
             fail(place, "its attributes differ in length");
         read_colors(in, place, result);
         read_influences(in, place, result);

@@ -221,9 +221,7 @@ class SceneWriter {
         const Json before = written;
         for (const auto& [part, value] : before.items()) {
             if (params_.known.texture.count(part) > 0) continue;
-            // The reader takes the set of the base colour's picture for all.
-            if (part == "texCoord" ? key != "baseColorTexture" : value != Json(1.0))
-                left_out_.note(key + "/" + part, material);
+            if (value != Json(1.0)) left_out_.note(key + "/" + part, material);
             written.erase(part);
         }
         return written.size() == 1 ? written.at("file") : written;

@@ -74,6 +74,8 @@ MeshFields all_mesh_fields() {
         part<Mesh>(
             "uvIndices", list_of(ref("index"), 3),
             "One per entry of faceVertexIndices; a copy of faceVertexIndices makes uvs one per point."),
+        part<Mesh>("uvs1", list_of(ref("vec2"), 1),
+                   "Of textures with texCoord 1, one per entry of faceVertexIndices."),
     };
     for (const Field<Cage>& field : subdivision_fields()) {
         fields.emplace_back();
@@ -98,7 +100,7 @@ constexpr const char* kMeshRules = R"json({
     { "if": { "required": ["file"] },
       "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
     { "if": { "required": ["primitive"] },
-      "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "subdivisionScheme": false, "interpolateBoundary": false,
+      "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
         "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } }
   ]
 })json";
@@ -268,6 +270,27 @@ void settle_materials(PolygonMesh& polygons, Mesh& mesh, Scene& scene) {
         material = mesh.material != kNone || material == kNone ? fallback : first + material;
 }
 
+bool asks_for_second_uvs(const Material& material) {
+    const TextureSampler* samplers[] = {&material.base_color_sampler,
+                                        &material.metallic_roughness_texture.sampler,
+                                        &material.normal_texture.sampler, &material.occlusion_texture.sampler,
+                                        &material.emissive_texture.sampler};
+    return std::any_of(std::begin(samplers), std::end(samplers),
+                       [](const TextureSampler* sampler) { return sampler->uv_set == 1; });
+}
+
+/// Leaves the second set of uv where a material asks for it; where there is none the first stands in.
+void settle_second_uvs(const Node& node, ObjectMesh& object, Reading& reading) {
+    const bool is_asked = std::any_of(object.material.begin(), object.material.end(), [&](Id material) {
+        return asks_for_second_uvs(reading.scene.materials[material]);
+    });
+    if (!is_asked) object.second_uvs.clear();
+    if (!is_asked || !object.second_uvs.empty()) return;
+    reading.warn(node.place,
+                 "a texture asks for a second set of uv, of which there is none: the first is taken");
+    object.second_uvs = object.uvs;
+}
+
 void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     if (mesh.material != kNone) {
         const Material& material = reading.scene.materials[mesh.material];
@@ -289,6 +312,7 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     TriangulatedMesh triangulated = triangulate(polygons);
     mesh.object = std::move(triangulated.object);
     settle_materials(polygons, mesh, reading.scene);
+    settle_second_uvs(node, mesh.object, reading);
     const AlphaCut cut = cut_by_alpha(mesh.object, reading.scene.materials);
     warn_count(cut.too_fine, "triangles are not cut out by their picture, which has too many texels there",
                node.place, reading);

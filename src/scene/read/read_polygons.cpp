@@ -86,6 +86,11 @@ PolygonMesh read_inline_polygons(const Node& mesh) {
                  std::accumulate(cage.face_vertex_counts.begin(), cage.face_vertex_counts.end(), 0LL),
                  "the sum of faceVertexCounts");
     if (mesh.has("uvs")) read_uvs(mesh, polygons);
+    if (mesh.has("uvs1")) {
+        check_length(mesh["uvs1"], static_cast<long long>(polygons.cage.face_vertex_indices.size()),
+                     "one per entry of faceVertexIndices");
+        for (const Json& uv : mesh["uvs1"].json) polygons.second_uvs.push_back(to_vec2(uv));
+    }
     return polygons;
 }
 

@@ -82,6 +82,8 @@ const std::vector<Field<WrittenTexture>>& texture_fields() {
                    choice("wrapS", &TextureSampler::wrap_s, "What lies left and right of the picture.")),
             within(&WrittenTexture::sampler,
                    choice("wrapT", &TextureSampler::wrap_t, "What lies above and below it.")),
+            within(&WrittenTexture::sampler, setting("texCoord", &TextureSampler::uv_set, whole_in(0, 1),
+                                                     "The mesh's set of uv: 0: 'uvs', 1: 'uvs1'.")),
             setting("heights", &WrittenTexture::heights, yes_or_no(),
                     "normalTexture: the picture holds heights; one of 1 is as high as a texel is wide."),
             with_default(part<WrittenTexture>("scale", ref("number"), "normalTexture: factor of its slopes."),
