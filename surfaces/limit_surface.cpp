@@ -7,9 +7,10 @@
 #include "surfaces/checked_cage.h"
 #include "surfaces/face_hulls.h"
 #include "surfaces/limit_patches.h"
-#include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/polygon_surface.h"
+#include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
+#include "surfaces/texture_places.h"
 
 namespace trilens {
 namespace {
@@ -128,8 +129,18 @@ std::vector<Box> hulls_of(const CheckedCage& cage) {
     return hulls;
 }
 
-class LimitSurface final : public Surface, public HasHulls {
+struct NamedCage {
+    const CheckedCage& cage;
+    const std::string& name;
+    bool is_as_given = true;  // no face or corner of it was left out
+};
+
+class LimitSurface final : public Surface, public HasHulls, public HasCageFaces {
   public:
+    LimitSurface(const NamedCage& named, const Warn& warn, double memory)
+        : LimitSurface(named.cage, named.name, warn, memory) {
+        is_as_given_ = named.is_as_given;
+    }
     LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn, double memory)
         : domain_(cage.scheme == SubdivisionScheme::kLoop ? FaceDomain::kTriangle : FaceDomain::kSquare),
           patches_(cage, name, memory),
@@ -159,6 +170,10 @@ class LimitSurface final : public Surface, public HasHulls {
     }
     std::optional<Box> hull(Id face) const override {
         return hulls_[static_cast<std::size_t>(faces_[face].cage_face)];
+    }
+    std::optional<CageFace> cage_face(Id face) const override {
+        if (!is_as_given_) return std::nullopt;
+        return CageFace{faces_[face].cage_face, faces_[face].sub_face};
     }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
@@ -218,6 +233,7 @@ class LimitSurface final : public Surface, public HasHulls {
     }
 
     FaceDomain domain_;
+    bool is_as_given_ = true;
     LimitPatches patches_;
     std::vector<Box> hulls_;  // per face of the cage
     std::vector<SurfaceFace> faces_;
@@ -228,7 +244,9 @@ class LimitSurface final : public Surface, public HasHulls {
 std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn,
                                             double memory) {
     if (cage.scheme == SubdivisionScheme::kUnsubdivided) return make_polygon_surface(cage, name);
-    return std::make_unique<LimitSurface>(check_cage(cage, name, warn), name, warn, memory);
+    const CheckedCage checked = check_cage(cage, name, warn);
+    const bool is_as_given = checked.vertices.size() == cage.face_vertex_indices.size();
+    return std::make_unique<LimitSurface>(NamedCage{checked, name, is_as_given}, warn, memory);
 }
 
 }  // namespace trilens

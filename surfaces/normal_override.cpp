@@ -72,19 +72,24 @@ Vec3 tilted(const NormalField& field, const Vec3& position, const Vec3& own) {
     return normalize_or_zero(own + field.amplitude * tangential);
 }
 
+/// The normal at a point of a face.
+using NormalAt = std::function<Vec3(Id face, const Vec2& uv, const SurfacePoint& point)>;
+
 /// A surface that answers with another normal.
 class BorrowedNormals final : public Surface, public HasHulls {
   public:
-    BorrowedNormals(std::shared_ptr<const Surface> surface, const NormalField& field)
-        : surface_(std::move(surface)), field_(field) {}
+    BorrowedNormals(std::shared_ptr<const Surface> surface, NormalAt normal)
+        : surface_(std::move(surface)), normal_(std::move(normal)) {}
 
     std::size_t face_count() const override { return surface_->face_count(); }
     FaceDomain domain(Id face) const override { return surface_->domain(face); }
     FaceBorder border(Id face) const override { return surface_->border(face); }
 
-    SurfacePoint eval(Id face, const Vec2& uv) const override { return turned(surface_->eval(face, uv)); }
+    SurfacePoint eval(Id face, const Vec2& uv) const override {
+        return turned(face, uv, surface_->eval(face, uv));
+    }
     SurfacePoint eval_first_order(Id face, const Vec2& uv) const override {
-        return turned(surface_->eval_first_order(face, uv));
+        return turned(face, uv, surface_->eval_first_order(face, uv));
     }
 
     std::size_t bytes_held() const override { return surface_->bytes_held(); }
@@ -96,18 +101,18 @@ class BorrowedNormals final : public Surface, public HasHulls {
     bool has_closed_form() const override { return surface_->has_closed_form(); }
     std::optional<SurfaceHit> intersect(const Ray& ray, double t_min) const override {
         std::optional<SurfaceHit> hit = surface_->intersect(ray, t_min);
-        if (hit) hit->point = turned(hit->point);
+        if (hit) hit->point = turned(hit->face, hit->uv, hit->point);
         return hit;
     }
 
   private:
-    SurfacePoint turned(SurfacePoint point) const {
-        point.normal = eval_normal(field_, point.position, point.normal);
+    SurfacePoint turned(Id face, const Vec2& uv, SurfacePoint point) const {
+        point.normal = normal_(face, uv, point);
         return point;
     }
 
     std::shared_ptr<const Surface> surface_;
-    NormalField field_;
+    NormalAt normal_;
 };
 
 }  // namespace
@@ -130,7 +135,28 @@ void override_normals(SurfaceGrid& grid, const NormalField& field) {
 
 std::unique_ptr<Surface> with_normals(std::shared_ptr<const Surface> surface, const NormalField& field) {
     TRILENS_CHECK(surface != nullptr, "there must be a surface to turn the normals of");
-    return std::make_unique<BorrowedNormals>(std::move(surface), field);
+    return std::make_unique<BorrowedNormals>(std::move(surface),
+                                             [field](Id, const Vec2&, const SurfacePoint& point) {
+                                                 return eval_normal(field, point.position, point.normal);
+                                             });
+}
+
+std::unique_ptr<Surface> with_normal_map(std::shared_ptr<const Surface> surface, TexturePlaces places,
+                                         MapNormals normals) {
+    TRILENS_CHECK(surface != nullptr, "there must be a surface to turn the normals of");
+    return std::make_unique<BorrowedNormals>(
+        std::move(surface), [places = std::move(places), normals = std::move(normals)](
+                                Id face, const Vec2& uv, const SurfacePoint& point) {
+            const TexturePlace place = places(face, uv, point);
+            const Vec3& own = point.normal;
+            const Vec3 tangent = normalize_or_zero(place.along_u - dot(place.along_u, own) * own);
+            if (tangent == Vec3(0) || own == Vec3(0)) return own;
+            Vec3 bitangent = cross(own, tangent);
+            if (dot(bitangent, place.along_v) < 0) bitangent = -bitangent;
+            const Vec3 in_map = normals(place.uv);
+            const Vec3 turned = normalize_or_zero(in_map.x * tangent + in_map.y * bitangent + in_map.z * own);
+            return turned == Vec3(0) ? own : turned;
+        });
 }
 
 }  // namespace trilens

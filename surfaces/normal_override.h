@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "base/raymesh/surface.h"
+#include "surfaces/texture_places.h"
 
 namespace trilens {
 
@@ -33,5 +35,14 @@ void override_normals(SurfaceGrid& grid, const NormalField& field);
 /// The same for the exact surface: positions, derivatives and hits of `surface`, the field's normals. Its
 /// normal is then no longer along du x dv.
 std::unique_ptr<Surface> with_normals(std::shared_ptr<const Surface> surface, const NormalField& field);
+
+/// Normals of a picture: unit, along u, along v and the surface's own normal. Called by many threads.
+using MapNormals = std::function<Vec3(const Vec2& uv)>;
+
+/// `surface` with its normals turned by a picture's, which lies as `places` says; where u and v have no
+/// direction they are its own. Those of a map whose third coordinate is not positive leave the surface's
+/// side.
+std::unique_ptr<Surface> with_normal_map(std::shared_ptr<const Surface> surface, TexturePlaces places,
+                                         MapNormals normals);
 
 }  // namespace trilens

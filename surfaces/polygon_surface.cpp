@@ -11,6 +11,7 @@
 
 #include "base/util/error.h"
 #include "surfaces/face_hulls.h"
+#include "surfaces/texture_places.h"
 
 namespace trilens {
 namespace {
@@ -49,7 +50,7 @@ class TriangleBorders {
     std::map<std::pair<Id, Id>, Edge> edges_;
 };
 
-class PolygonSurface final : public Surface, public HasHulls {
+class PolygonSurface final : public Surface, public HasHulls, public HasCageFaces {
   public:
     PolygonSurface(const Cage& cage, const std::string& name) {
         std::vector<std::array<Id, 3>> corners;
@@ -70,6 +71,8 @@ class PolygonSurface final : public Surface, public HasHulls {
     FaceDomain domain(Id) const override { return FaceDomain::kTriangle; }
     FaceBorder border(Id face) const override { return faces_[face].border; }
     std::size_t bytes_held() const override { return faces_.capacity() * sizeof(Face); }
+
+    std::optional<CageFace> cage_face(Id face) const override { return CageFace{static_cast<int>(face), -1}; }
 
     std::optional<Box> hull(Id face) const override {
         const Face& here = faces_[face];

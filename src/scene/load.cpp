@@ -1,6 +1,7 @@
 // From a scene file to a Scene: parse, override, check against the schema, then read part by part.
 #include "scene/load.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "json/json.h"
 #include "json/schema.h"
 #include "scene/animation/animation_keys.h"
+#include "scene/data/alpha_cut.h"
 #include "scene/data/light_objects.h"
 #include "scene/imports/expand_imports.h"
 #include "scene/imports/housing.h"
@@ -75,6 +77,19 @@ void warn_of_appearance(Reading& reading) {
         if (i >= scene.materials.size()) continue;
         needs_light = needs_light || !scene.materials[i].unlit;
     }
+    const bool has_shadows = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                         [](const Light& light) { return light.shadows; });
+    const auto is_glass = [&](const Mesh& mesh) {
+        return mesh.role == Role::kOptic && scene.materials[mesh.material].transmission_factor == 1;
+    };
+    const bool has_glass = std::any_of(scene.meshes.begin(), scene.meshes.end(), is_glass);
+    const auto blended = std::find_if(of_objects.begin(), of_objects.end(), [&](Id i) {
+        return i < scene.materials.size() && blends(scene.materials[i]);
+    });
+    if (blended != of_objects.end() && (has_shadows || has_glass))
+        reading.warn("/materials/" + std::to_string(*blended),
+                     "blends with what is behind: such surfaces cast no shadow, and are not drawn inside of "
+                     "glass");
     if (needs_light && scene.lights.empty())
         reading.warn("/lights", "there is no light: every object whose material is not unlit is black");
 }

@@ -151,6 +151,9 @@ bool has_light_maps(const ShadeScene& scene, const Hit& hit);
 /// differential. Of `seen` no texels are asked for.
 MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen);
 
+/// How much of what lies behind the material hides there: 0..1, by the alpha of its base colour's picture.
+double opacity_at(const ShadeScene& scene, const Hit& hit);
+
 /// Reflectance of a polished metal by Schlick's approximation, as glTF has it:
 /// f0 + (1 - f0) (1 - cos)^5, cos the cosine of incidence in 0..1.
 /// Source: Schlick, An Inexpensive BRDF Model for Physically-based Rendering, 1994.

@@ -101,7 +101,7 @@ struct Shaded {
     std::array<std::uint64_t, kShadeLanes> lights;  // as ReachingLight has them
     // Lanes that the batch's sums are not enough for, with their own.
     ShadeBatch::Bits viewed = 0;
-    std::array<ViewedLane, kShadeLanes> viewed_lane;
+    std::vector<ViewedLane> viewed_lane;    // as many as lanes, once there are any
     std::array<Vec3, kShadeLanes> caustic;  // irradiance over pi that comes over optics; then its radiance
 
     void add(const SeenAlong& seen, std::size_t index);
@@ -205,6 +205,7 @@ void Shaded::find_viewed(ShadeBatch::Bits wanted) {
         const Hit& hit = *seen[i]->hit;
         if (is_plain(scene, hit)) return;
         viewed |= Segments::bit(i);
+        viewed_lane.resize(kShadeLanes);
         const MapTexels texels = seen[i]->texels ? *seen[i]->texels : texels_at(scene, *seen[i]);
         const Vec3 normal =
             mapped_normal(scene, hit, {batch.normal.get(i), batch.geometric_normal.get(i)}, texels.normal);

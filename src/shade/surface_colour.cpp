@@ -47,12 +47,21 @@ Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen, const Tex
     return footprint;
 }
 
-/// A picture where a ray meets the surface; the mean over the ray's footprint where there are `mips`.
-Vec3 look_up(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips,
-             const PlacedTexture& texture) {
+/// A picture that is there.
+struct LookedUp {
+    const Texture& picture;
+    const TextureSampler& sampler;
+};
+
+LookedUp placed(const PlacedTexture& texture) {
+    return {*texture.picture, texture.sampler};
+}
+
+/// The picture where a ray meets the surface; the mean over the ray's footprint where there are `mips`.
+Vec3 look_up(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips, const LookedUp& texture) {
     const TextureSampler& sampler = texture.sampler;
     const Vec2 place = sampler.place(uv_at(scene, *seen.hit, sampler));
-    if (!mips) return lookup(*texture.picture, sampler, place);
+    if (!mips) return lookup(texture.picture, sampler, place);
     Footprint footprint = uv_footprint(scene, seen, sampler);
     for (Vec2& side : footprint) side = sampler.step(side);
     return lookup(*mips, sampler, place, footprint);
@@ -63,10 +72,10 @@ void look_up_normal(const ShadeScene& scene, const SeenAlong& seen, const MipMap
     const Material& material = material_of(scene, *seen.hit);
     Vec3 normal;
     if (mips) {
-        normal = look_up(scene, seen, mips, material.normal_texture);
+        normal = look_up(scene, seen, mips, placed(material.normal_texture));
         texels.normal_length = std::min(length(normal), 1.0);
     } else {
-        const Vec3 texel = look_up(scene, seen, nullptr, material.normal_texture);
+        const Vec3 texel = look_up(scene, seen, nullptr, placed(material.normal_texture));
         normal = {material.normal_scale * (2 * texel.x - 1), material.normal_scale * (2 * texel.y - 1),
                   2 * texel.z - 1};
     }
@@ -195,6 +204,15 @@ Vec3 background_radiance(const Background& background, const MipMap& map, const 
                                      {turned(background, sides[0]), turned(background, sides[1])});
 }
 
+double opacity_at(const ShadeScene& scene, const Hit& hit) {
+    const Material& material = material_of(scene, hit);
+    const Texture* picture = material.base_color_texture.get();
+    if (!picture || picture->alpha.empty()) return material.alpha_factor;
+    const TextureSampler& sampler = material.base_color_sampler;
+    const double alpha = lookup_alpha(*picture, sampler, sampler.place(uv_at(scene, hit, sampler)));
+    return std::clamp(material.alpha_factor * alpha, 0.0, 1.0);
+}
+
 MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen) {
     MapTexels texels;
     if (!seen.hit->seen()) {
@@ -210,10 +228,11 @@ MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen) {
     texels.base = material.base_color_factor;
     if (material.base_color_texture)
         texels.base *= look_up(scene, seen, mips ? mips->base_color.get() : nullptr,
-                               {material.base_color_texture, material.base_color_sampler});
+                               {*material.base_color_texture, material.base_color_sampler});
     if (material.unlit) return texels;
     if (const PlacedTexture& both = material.metallic_roughness_texture; both.picture) {
-        const Vec3 texel = look_up(scene, seen, mips ? mips->metallic_roughness.get() : nullptr, both);
+        const Vec3 texel =
+            look_up(scene, seen, mips ? mips->metallic_roughness.get() : nullptr, placed(both));
         texels.roughness = std::clamp(texel.y, 0.0, 1.0);
         texels.metallic = std::clamp(texel.z, 0.0, 1.0);
     }
@@ -221,12 +240,12 @@ MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen) {
         look_up_normal(scene, seen, mips ? mips->normal.get() : nullptr, texels);
     if (material.occlusion_texture.picture) {
         const Vec3 texel =
-            look_up(scene, seen, mips ? mips->occlusion.get() : nullptr, material.occlusion_texture);
+            look_up(scene, seen, mips ? mips->occlusion.get() : nullptr, placed(material.occlusion_texture));
         texels.occlusion = 1 + material.occlusion_strength * (std::clamp(texel.x, 0.0, 1.0) - 1);
     }
     if (material.emissive_texture.picture)
         texels.emissive =
-            look_up(scene, seen, mips ? mips->emissive.get() : nullptr, material.emissive_texture);
+            look_up(scene, seen, mips ? mips->emissive.get() : nullptr, placed(material.emissive_texture));
     return texels;
 }
 

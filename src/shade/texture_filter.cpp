@@ -133,7 +133,11 @@ const Texture& MipMap::level(std::size_t level) const {
     })[level - 1];
 }
 
-Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place) {
+namespace {
+
+/// Between the four texels around a place; at(texture, x, y): what of a texel is asked for.
+template <typename At>
+auto bilinear(const Texture& texture, const TextureSampler& wrap, const Vec2& place, const At& at) {
     const double x = reduced(place.x, wrap.wrap_s) * texture.width - 0.5,
                  y = (1 - reduced(place.y, wrap.wrap_t)) * texture.height - 0.5;
     const double left = floor_of(x), top = floor_of(y);
@@ -142,8 +146,21 @@ Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& plac
     const auto row = [&](long j) { return wrapped(j, texture.height, wrap.wrap_t); };
     const int x0 = column(static_cast<long>(left)), x1 = column(static_cast<long>(left) + 1);
     const int y0 = row(static_cast<long>(top)), y1 = row(static_cast<long>(top) + 1);
-    return (1 - fy) * ((1 - fx) * texel(texture, x0, y0) + fx * texel(texture, x1, y0)) +
-           fy * ((1 - fx) * texel(texture, x0, y1) + fx * texel(texture, x1, y1));
+    return (1 - fy) * ((1 - fx) * at(texture, x0, y0) + fx * at(texture, x1, y0)) +
+           fy * ((1 - fx) * at(texture, x0, y1) + fx * at(texture, x1, y1));
+}
+
+}  // namespace
+
+Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place) {
+    return bilinear(texture, wrap, place, texel);
+}
+
+double lookup_alpha(const Texture& texture, const TextureSampler& wrap, const Vec2& place) {
+    return bilinear(texture, wrap, place, [](const Texture& of, int x, int y) {
+        return static_cast<double>(of.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.width) +
+                                            static_cast<std::size_t>(x)]);
+    });
 }
 
 Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint) {

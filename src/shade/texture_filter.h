@@ -37,6 +37,9 @@ using Footprint = std::array<Vec2, 2>;
 /// Bilinear look-up at a place of the picture: x to the right, y upward, both 0 to 1 from its bottom left.
 Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place);
 
+/// The same of its alpha; the picture has some.
+double lookup_alpha(const Texture& texture, const TextureSampler& wrap, const Vec2& place);
+
 /// The mean of the picture over a footprint, whose sides are in units of `place`: the rectangle that the
 /// pixel's square becomes when it is turned until its image has right angles, seen at the coarsest level
 /// whose texels are no wider than it, at places a texel apart. One that is more than 32 times as long as wide

@@ -65,8 +65,8 @@ inline void set_transform(const TextureTransform& transform, TextureSampler& sam
 
 // Materials, by glTF's names; plain data that scene writes and shade reads.
 
-/// glTF's: what is less opaque than a cutoff is not there (kMask), or shows what lies behind in part (kBlend;
-/// drawn as kMask at one half).
+/// glTF's: what is less opaque than a cutoff is not there (kMask), or shows what lies behind in part
+/// (kBlend).
 enum class AlphaMode { kOpaque, kMask, kBlend };
 
 template <>
@@ -125,7 +125,7 @@ struct Material {
     PlacedTexture normal_texture;               // 2 rgb - 1 in the frame of u, v (upward) and the normal
     PlacedTexture occlusion_texture;            // red: of ambient and environment light what arrives
     PlacedTexture emissive_texture;             // factor of emissive_factor
-    AlphaMode alpha_mode = AlphaMode::kOpaque;  // of objects, cut when they are read
+    AlphaMode alpha_mode = AlphaMode::kOpaque;  // of objects, masks cut when they are read
     double alpha_cutoff = 0.5;
     double alpha_factor = 1;  // times the alpha of the base colour's picture
 

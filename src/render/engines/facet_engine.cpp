@@ -319,7 +319,8 @@ void FacetViewer::choose_drawers(const EngineChoice& engine, const WatchMesh& wa
         redraws_direct_ = true;
     }
     draw_paths_ = watch ? watched(watch, draw_objects_) : draw_objects_;
-    if (has_volumes(world_)) draw_volumes_ = traces ? trace_volumes(world_) : project_volumes(world_);
+    if (has_layers(world_))
+        draw_volumes_ = traces || world_.blended ? trace_layers(world_) : project_volumes(world_);
 }
 
 FacetViewer::FacetViewer(const World& world, Frame frame, const EngineChoice& engine, const WatchMesh& watch)

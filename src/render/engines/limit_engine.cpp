@@ -101,7 +101,7 @@ void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media
     if (view.hit.seen()) view.depth = view.hit.t;
     if (volumes && !glass_around(world_, around)) {
         const double until = first.optic != kNone ? first.at.t : view.hit.seen() ? view.hit.t : reach;
-        volumes->first = trace_volumes(world_, view.ray, until);
+        volumes->first = trace_layers(world_, view.ray, until);
     }
     if (first.optic == kNone) return;
     view.optic = first.optic;
@@ -128,7 +128,7 @@ void LimitViewer::view(const SampleGrid& grid, SampleViews& views) {
     }
 
     set_initial_media(camera_media_, views);
-    if (has_volumes(world_)) views.volumes.resize(grid.size());
+    if (has_layers(world_)) views.volumes.resize(grid.size());
     const std::size_t count = owned.sample.size();
     std::vector<Found> found((count + kSamplesPerTask - 1) / kSamplesPerTask);
     const auto samples_of = [&](std::size_t task) {

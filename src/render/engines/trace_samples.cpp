@@ -122,7 +122,7 @@ std::vector<double> add_volumes(const World& world, const std::vector<PathSegmen
         const double until = !segment.ends        ? segment.next
                              : segment.hit.seen() ? segment.hit.t
                                                   : std::numeric_limits<double>::infinity();
-        const VolumeLight light = trace_volumes(world, segment.ray, until);
+        const VolumeLight light = trace_layers(world, segment.ray, until);
         (segment.path == Path::kReflect ? found.reflect : found.refract) +=
             through[i] * segment.weight * light.emission;
         through[i] *= light.transmittance;

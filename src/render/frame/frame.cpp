@@ -262,7 +262,7 @@ PathBuilder make_optic_paths(const World& world, const Frame& frame, std::size_t
 std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame) {
     // Legs that end on a nested optic are drawn to what lies behind it: no measure of a volume.
     if (!frame.camera.linear || frame.camera.linear->parallel || !frame.camera_media.none() ||
-        !world.volumes.empty())
+        !world.volumes.empty() || world.blended)
         return std::nullopt;
     NestedStage stage;
     stage.world = path_world(world);

@@ -51,7 +51,7 @@ struct SampleColour {
     double coverage = 0;  // 1 where a mesh is seen, 0 on the background
 };
 
-/// What volumes add to a sample.
+/// What volumes and blended surfaces add to a sample.
 struct SampleVolumes {
     VolumeLight first;  // between where the camera's ray starts and what the sample shows first
     // Emission along the paths' later legs, summed, in shares of the light that leaves the first optic.
@@ -65,7 +65,7 @@ struct SampleViews {
     std::vector<PathEnd> ends;           // of all samples, those of one side by side
     std::vector<Step> steps;             // of all ends; ends with one history may share theirs
     std::vector<Media> around;           // that rays of the camera start in
-    std::vector<SampleVolumes> volumes;  // one per sample; empty: the world has no volumes
+    std::vector<SampleVolumes> volumes;  // one per sample; empty: the world has neither
     std::size_t projected_facets = 0;    // facets and parts of facets that the optics have by now
     std::size_t crowded_out = 0;         // facets that are traced for want of room
     double outline_pixels =

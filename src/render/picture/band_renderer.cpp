@@ -93,9 +93,10 @@ class FilteredSamples {
     std::vector<SampleColour> colours_;
 };
 
-/// Volumes are not the same over a fragment's samples.
+/// Volumes and blended surfaces are not the same over a fragment's samples.
 bool makes_fragments(const World& world, const Viewer& viewer, const LayerRequest& request, int side) {
-    return side > 1 && world.volumes.empty() && request.shading == Shading::kFragment && viewer.has_keys();
+    return side > 1 && world.volumes.empty() && !world.blended && request.shading == Shading::kFragment &&
+           viewer.has_keys();
 }
 
 /// How many rows of pixels are drawn together: whole blocks where they are many, one for every two threads at

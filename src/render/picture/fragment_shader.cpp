@@ -54,7 +54,6 @@ void draw_inside(const Hit& inside, Hit& hit) {
 struct SeenThere {
     Hit hit;
     Ray ray;
-    Vec2 place{0};  // on the film
 };
 
 /// One contribution to a fragment, with what its samples see.
@@ -93,13 +92,15 @@ class SpreadContribution {
     std::span<const std::uint8_t> corner_numbers() const { return {numbers_.data(), number_count_}; }
     /// What pictures show in the mean over its samples; none: what they do at the shaded point.
     std::optional<MapTexels> mean_texels() const;
-    /// The same over one sample's part of the pixel; none: as at() there shows it.
-    std::optional<MapTexels> sample_texels(const SeenThere& there) const;
+    /// The same over one sample's part of the pixel, of what at() there shows.
+    MapTexels sample_texels(const SeenThere& there, const Vec2& place) const;
+    /// The place of a corner.
+    const Vec2& corner_place(std::size_t corner) const { return corner_places_[corner]; }
     /// Sides of the parallelogram on the surface that its samples stand for; null where it is not known.
     const std::array<Vec3, 2>* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
   private:
-    std::optional<MapTexels> texels_over(const SeenThere& there, const std::array<Vec2, 2>& sides) const;
+    MapTexels texels_over(const SeenThere& there, const std::array<Vec2, 2>& sides, const Vec2& place) const;
     void find_footprint();
     void find_corners();
     void find_spread();
@@ -113,6 +114,7 @@ class SpreadContribution {
     Vec2 centroid_{0};
     std::array<Vec2, 2> spread_{Vec2(1, 0), Vec2(0, 1)};  // its sides
     std::array<SeenThere, kCorners> corners_;
+    std::array<Vec2, kCorners> corner_places_;
     std::array<std::uint8_t, kCorners> numbers_;
     std::size_t corner_count_ = 0, number_count_ = 0;
     std::optional<std::array<Vec3, 2>> footprint_;
@@ -120,11 +122,11 @@ class SpreadContribution {
 
 std::optional<SeenThere> SpreadContribution::at(const Vec2& place) const {
     const Ray ray = map_.at(place);
-    if (!contribution_.seen.hit->seen()) return SeenThere{{}, ray, place};
+    if (!contribution_.seen.hit->seen()) return SeenThere{{}, ray};
     const std::optional<Hit> hit = meet_plane(shading_.world.objects, contribution_.seen.hit->triangle, ray);
     if (!hit) return std::nullopt;
     // Samples of neighbouring facets see the same triangle; this facet's map, continued, may miss it.
-    SeenThere there{*hit, ray, place};
+    SeenThere there{*hit, ray};
     draw_inside(*contribution_.seen.hit, there.hit);
     return there;
 }
@@ -156,8 +158,10 @@ void SpreadContribution::find_corners() {
             static_cast<std::size_t>(std::find(places.begin(), places.end(), places[k]) - places.begin());
         known[k] = same < k ? known[same] : kCorners;
         if (same == k)
-            if (const std::optional<SeenThere> there = at(fragment_.pixel + places[k]))
+            if (const std::optional<SeenThere> there = at(fragment_.pixel + places[k])) {
+                corner_places_[corner_count_] = fragment_.pixel + places[k];
                 corners_[known[k] = corner_count_++] = *there;
+            }
         if (known[k] < kCorners) numbers_[number_count_++] = static_cast<std::uint8_t>(known[k]);
     }
 }
@@ -206,9 +210,9 @@ void SpreadContribution::find_mean_length() {
         contribution_.mean_length = there->hit.t * length(there->ray.direction);
 }
 
-std::optional<MapTexels> SpreadContribution::texels_over(const SeenThere& there,
-                                                         const std::array<Vec2, 2>& sides) const {
-    const RayDifferential by_pixel = map_.differential(there.place);
+MapTexels SpreadContribution::texels_over(const SeenThere& there, const std::array<Vec2, 2>& sides,
+                                          const Vec2& place) const {
+    const RayDifferential by_pixel = map_.differential(place);
     RayDifferential differential;
     for (std::size_t k = 0; k < 2; ++k)
         for (int c = 0; c < 2; ++c) {
@@ -223,13 +227,12 @@ std::optional<MapTexels> SpreadContribution::mean_texels() const {
     if (!map_.mesh || !has_texture(shading_.world.shading, *contribution_.seen.hit)) return std::nullopt;
     const std::optional<SeenThere> there = at(centroid_);
     if (!there) return std::nullopt;
-    return texels_over(*there, spread_);
+    return texels_over(*there, spread_, centroid_);
 }
 
-std::optional<MapTexels> SpreadContribution::sample_texels(const SeenThere& there) const {
-    if (!has_light_maps(shading_.world.shading, there.hit)) return std::nullopt;
+MapTexels SpreadContribution::sample_texels(const SeenThere& there, const Vec2& place) const {
     const double side = 1.0 / shading_.side;
-    return texels_over(there, {Vec2(side, 0), Vec2(0, side)});
+    return texels_over(there, {Vec2(side, 0), Vec2(0, side)}, place);
 }
 
 /// Contributions of several fragments, shaded together.
@@ -280,16 +283,19 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
         const Hit& hit = *one.contribution().seen.hit;
         return hit.seen() && !one.corners().empty() && is_lit(shading_.world.shading, hit);
     };
-    for (const SpreadContribution& one : waiting_)
-        if (is_spread(one))
-            for (const SeenThere& corner : one.corners()) {
-                corners[count] = {&corner.hit, &corner.ray};
-                if (const std::optional<MapTexels> of_sample = one.sample_texels(corner)) {
-                    corner_texels.reserve(corners.size());
-                    corners[count].texels = &corner_texels.emplace_back(*of_sample);
-                }
-                corners[count++].without_caustics = true;
-            }
+    for (const SpreadContribution& one : waiting_) {
+        if (!is_spread(one)) continue;
+        const bool has_maps = has_light_maps(shading_.world.shading, *one.contribution().seen.hit);
+        if (has_maps) corner_texels.reserve(corners.size());
+        for (std::size_t k = 0; k < one.corners().size(); ++k) {
+            const SeenThere& corner = one.corners()[k];
+            corners[count] = {&corner.hit, &corner.ray};
+            if (has_maps)
+                corners[count].texels =
+                    &corner_texels.emplace_back(one.sample_texels(corner, one.corner_place(k)));
+            corners[count++].without_caustics = true;
+        }
+    }
     std::array<ReachingLight, kMostShaded * kCorners> there;
     find_reaching_light(shading_.world.shading, std::span(corners).first(count),
                         std::span(there).first(count));
@@ -328,18 +334,18 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
 
 /// The light at each sample by itself.
 ArrivedLight FragmentContributions::mean_arrived(const SpreadContribution& contribution) const {
+    const bool has_maps = has_light_maps(shading_.world.shading, *contribution.contribution().seen.hit);
     std::vector<SeenThere> there;
+    std::vector<MapTexels> texels;  // of as many, where pictures say how light comes
     for (std::size_t s = 0; s < contribution.sample_count(); ++s)
-        if (const std::optional<SeenThere> seen = contribution.at(contribution.place(s)))
+        if (const std::optional<SeenThere> seen = contribution.at(contribution.place(s))) {
             there.push_back(*seen);
-    std::vector<SeenAlong> seen;
-    std::vector<MapTexels> texels;  // stay in place
-    for (const SeenThere& one : there) {
-        seen.push_back({&one.hit, &one.ray});
-        if (const std::optional<MapTexels> of_sample = contribution.sample_texels(one)) {
-            texels.reserve(there.size());
-            seen.back().texels = &texels.emplace_back(*of_sample);
+            if (has_maps) texels.push_back(contribution.sample_texels(*seen, contribution.place(s)));
         }
+    std::vector<SeenAlong> seen;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+        seen.push_back({&there[i].hit, &there[i].ray});
+        if (has_maps) seen.back().texels = &texels[i];
         seen.back().without_caustics = true;
     }
     std::vector<ReachingLight> light(seen.size());

@@ -5,6 +5,7 @@
 
 #include "base/util/parallel.h"
 #include "projector/scalar/scalar_engine.h"
+#include "render/world/blended_surfaces.h"
 #include "render/world/volume_geometry.h"
 
 namespace trilens {
@@ -75,7 +76,27 @@ DrawVolumes project_volumes(const World& world) {
     };
 }
 
-DrawVolumes trace_volumes(const World& world) {
+VolumeLight trace_layers(const World& world, const Ray& ray, double until) {
+    if (!world.blended) return trace_volumes(world, ray, until);
+    const std::vector<Hit> crossings = world.blended->crossings(ray, until);
+    const std::vector<VolumeLight> surfaces = world.blended->shade(ray, crossings);
+    VolumeLight sum;
+    double from = 0;
+    const auto add_cells = [&](double to) {
+        if (has_volumes(world) && to > from)
+            sum.put_behind(
+                trace_volumes(world, {ray.origin + from * ray.direction, ray.direction}, to - from));
+        from = to;
+    };
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+        add_cells(crossings[i].t);
+        sum.put_behind(surfaces[i]);
+    }
+    add_cells(until);
+    return sum;
+}
+
+DrawVolumes trace_layers(const World& world) {
     return [&world](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                     std::span<const double> until, std::span<VolumeLight> light) {
         for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -87,7 +108,7 @@ DrawVolumes trace_volumes(const World& world) {
                 for (const Id s : samples.subspan(from, to - from))
                     if (until[s] > 0)
                         light[s] =
-                            trace_volumes(world, sample_ray(mesh, f, weights, grid.position(s)), until[s]);
+                            trace_layers(world, sample_ray(mesh, f, weights, grid.position(s)), until[s]);
             });
         }
     };

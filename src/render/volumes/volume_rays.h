@@ -1,4 +1,5 @@
 // The light of volumes along rays: cells by projection of their faces, or by Embree's tree; one integral.
+// Blended surfaces (glTF's alphaMode BLEND) are part of it, in their order on the ray.
 #pragma once
 
 #include <functional>
@@ -16,6 +17,11 @@ inline bool has_volumes(const World& world) {
     return !world.volumes.empty();
 }
 
+/// Whether anything that lets light through in part may stand between what is seen and where it is seen from.
+inline bool has_layers(const World& world) {
+    return has_volumes(world) || world.blended;
+}
+
 /// The cells of a volume that a ray passes between t = 0 and t = until (t in units of its direction;
 /// infinity: to the end), in order of where it comes in. Truth: every cell whose box Embree's tree finds on
 /// the ray, clipped against its planes.
@@ -23,6 +29,10 @@ std::vector<CellStretch> trace_cells(const VolumeGeometry& volume, const Ray& ra
 
 /// The light of all volumes along a ray, its cells by trace_cells.
 VolumeLight trace_volumes(const World& world, const Ray& ray, double until);
+
+/// The light of all volumes and blended surfaces along a ray; surfaces by Embree's tree, and, where there are
+/// any, cells, too.
+VolumeLight trace_layers(const World& world, const Ray& ray, double until);
 
 /// The light of all volumes along the interpolated ray of every sample that `owned` gives to a facet with
 /// rays, from t = 0 to until[sample], written to light[sample]; others are left alone, as are samples whose
@@ -34,8 +44,8 @@ using DrawVolumes = std::function<void(const RayMesh&, const FacetSamples&, cons
 /// (find_crossings), in each cell the nearest plane behind (CrossedCells).
 DrawVolumes project_volumes(const World& world);
 
-/// By Embree, on the same rays.
-DrawVolumes trace_volumes(const World& world);
+/// By Embree, on the same rays, with blended surfaces.
+DrawVolumes trace_layers(const World& world);
 
 /// The cells of one volume by the projector: told each sample's, from many threads.
 using TakeCells = std::function<void(Id sample, const Ray& ray, const std::vector<CellStretch>& cells)>;

@@ -1,15 +1,20 @@
 #include "render/world/world.h"
 
 #include <algorithm>
+#include <array>
+#include <initializer_list>
 
 #include "base/math/box.h"
 #include "base/util/error.h"
+#include "render/world/blended_surfaces.h"
 #include "render/world/volume_geometry.h"
+#include "scene/data/alpha_cut.h"
 #include "scene/data/scene_digest.h"
 #include "shade/optic_weights.h"
 #include "surfaces/memory_budget.h"
 #include "surfaces/normal_override.h"
 #include "surfaces/surfaces.h"
+#include "surfaces/texture_places.h"
 
 namespace trilens {
 namespace {
@@ -31,22 +36,51 @@ void append_where_given(const std::vector<Corners>& given, std::size_t first_tri
     all.insert(all.end(), given.begin(), given.end());
 }
 
-void append_object(World& world, Id id, const Mesh& mesh) {
-    const Id first_point = static_cast<Id>(world.objects.points.size());
-    world.objects.points.insert(world.objects.points.end(), mesh.object.points.begin(),
-                                mesh.object.points.end());
-    const std::size_t count = mesh.object.triangles.size();
-    for (std::size_t t = 0; t < count; ++t) {
-        IdTriple corner = mesh.object.triangles[t];
-        for (Id& c : corner) c += first_point;
-        world.objects.triangles.push_back(corner);
-        world.objects.object.push_back(id);
-        world.objects.primitive.push_back(static_cast<Id>(t));
-        world.shading.material.push_back(mesh.object.material[t]);
+/// Triangles and what shading knows of them, as they are gathered.
+struct Gathered {
+    TriangleScene& triangles;
+    ShadeScene& shading;
+
+    /// `numbers`: of the mesh's triangles; empty: they are all.
+    void append(Id id, const ObjectMesh& mesh, const std::vector<Id>& numbers = {}) const {
+        const Id first_point = static_cast<Id>(triangles.points.size());
+        triangles.points.insert(triangles.points.end(), mesh.points.begin(), mesh.points.end());
+        const std::size_t count = mesh.triangles.size();
+        for (std::size_t t = 0; t < count; ++t) {
+            IdTriple corner = mesh.triangles[t];
+            for (Id& c : corner) c += first_point;
+            triangles.triangles.push_back(corner);
+            triangles.object.push_back(id);
+            triangles.primitive.push_back(numbers.empty() ? static_cast<Id>(t) : numbers[t]);
+            shading.material.push_back(mesh.material[t]);
+        }
+        append_where_given(mesh.uvs, triangles.size() - count, shading.uvs);
+        append_where_given(mesh.second_uvs, triangles.size() - count, shading.second_uvs);
+        append_where_given(mesh.normals, triangles.size() - count, shading.normals);
     }
-    append_where_given(mesh.object.uvs, world.objects.size() - count, world.shading.uvs);
-    append_where_given(mesh.object.second_uvs, world.objects.size() - count, world.shading.second_uvs);
-    append_where_given(mesh.object.normals, world.objects.size() - count, world.shading.normals);
+};
+
+/// Those of a mesh's triangles, with the mesh's points.
+ObjectMesh part_of(const ObjectMesh& mesh, const std::vector<Id>& numbers) {
+    ObjectMesh part;
+    part.points = mesh.points;
+    const auto take = [&](const auto& all, auto& into) {
+        for (const Id t : numbers)
+            if (!all.empty()) into.push_back(all[t]);
+    };
+    take(mesh.triangles, part.triangles);
+    take(mesh.uvs, part.uvs);
+    take(mesh.second_uvs, part.second_uvs);
+    take(mesh.normals, part.normals);
+    take(mesh.material, part.material);
+    return part;
+}
+
+/// By material of the scene.
+std::vector<char> blending_materials(const Scene& scene) {
+    std::vector<char> blending;
+    for (const Material& material : scene.materials) blending.push_back(blends(material));
+    return blending;
 }
 
 /// Room for the triangles of all objects, so that nothing is held twice while it grows.
@@ -75,12 +109,41 @@ NormalField normal_field(const NormalOverride& from) {
     return field;
 }
 
+/// The normals of a material's map by uv.
+MapNormals normals_of_map(const Material& material) {
+    return [picture = material.normal_texture.picture, sampler = material.normal_texture.sampler,
+            scale = material.normal_scale](const Vec2& uv) {
+        const Vec3 texel = lookup(*picture, sampler, sampler.place(uv));
+        return normalize_or_zero(Vec3(scale * (2 * texel.x - 1), scale * (2 * texel.y - 1), 2 * texel.z - 1));
+    };
+}
+
+/// Whether optics of both materials have the same normals.
+bool has_same_normals(const Material& a, const Material& b) {
+    const TextureSampler &s = a.normal_texture.sampler, &t = b.normal_texture.sampler;
+    return a.normal_texture.picture == b.normal_texture.picture &&
+           (!a.normal_texture.picture ||
+            (a.normal_scale == b.normal_scale && s.wrap_s == t.wrap_s && s.wrap_t == t.wrap_t &&
+             s.at_zero == t.at_zero && s.along_u == t.along_u && s.along_v == t.along_v &&
+             s.uv_set == t.uv_set));
+}
+
 }  // namespace
 
 std::shared_ptr<const Surface> make_optic_surface(const Scene& scene, Id id, const Warn& warn) {
     const Mesh& mesh = scene.meshes[id];
     std::unique_ptr<Surface> surface = mesh.primitive ? make_primitive_surface(*mesh.primitive)
                                                       : make_limit_surface(mesh.cage, mesh.name, warn);
+    if (mesh.maps_normals) {
+        std::optional<TexturePlaces> places = mesh.primitive
+                                                  ? places_on_primitive(*mesh.primitive)
+                                                  : places_on_cage(*surface, mesh.cage, mesh.cage_uvs);
+        if (places)
+            surface = with_normal_map(std::move(surface), std::move(*places),
+                                      normals_of_map(scene.materials[mesh.material]));
+        else if (warn)
+            warn(mesh.name + ": faces were repaired, so that its normal map is ignored");
+    }
     if (mesh.normals.type != NormalOverride::Type::kSmooth)
         surface = with_normals(std::move(surface), normal_field(mesh.normals));
     return surface;
@@ -99,9 +162,10 @@ Optic make_optic(const Scene& scene, Id id, const Warn& warn) {
     return optic;
 }
 
-double diagonal(const TriangleScene& scene) {
+double diagonal(std::initializer_list<const TriangleScene*> scenes) {
     Box box;
-    for (const Vec3& p : scene.points) box.include(p);
+    for (const TriangleScene* scene : scenes)
+        for (const Vec3& p : scene->points) box.include(p);
     const double size = length(box.size());
     return size > 0 ? size : 1;
 }
@@ -133,10 +197,29 @@ void gather_objects(World& world) {
     world.objects = {};
     world.shading = {};
     reserve_objects(world);
-    for (Id id = 0; id < world.scene.meshes.size(); ++id)
-        if (world.scene.meshes[id].role == Role::kObject) append_object(world, id, world.scene.meshes[id]);
+    const std::vector<char> blending = blending_materials(world.scene);
+    const Gathered opaque{world.objects, world.shading};
+    TriangleScene triangles;
+    ShadeScene shading;
+    const Gathered blended{triangles, shading};
+    for (Id id = 0; id < world.scene.meshes.size(); ++id) {
+        if (world.scene.meshes[id].role != Role::kObject) continue;
+        const ObjectMesh& mesh = world.scene.meshes[id].object;
+        if (std::none_of(mesh.material.begin(), mesh.material.end(), [&](Id m) { return blending[m]; })) {
+            opaque.append(id, mesh);
+            continue;
+        }
+        std::array<std::vector<Id>, 2> numbers;  // of opaque triangles, of those that blend
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+            numbers[blending[mesh.material[t]] ? 1 : 0].push_back(static_cast<Id>(t));
+        if (!numbers[0].empty()) opaque.append(id, part_of(mesh, numbers[0]), numbers[0]);
+        blended.append(id, part_of(mesh, numbers[1]), numbers[1]);
+    }
     world.shading.triangles = &world.objects;
-    world.shading.size = diagonal(world.objects);
+    world.shading.size = diagonal({&world.objects, &triangles});
+    world.blended.reset();
+    if (triangles.size() > 0)
+        world.blended = std::make_unique<BlendedSurfaces>(std::move(triangles), std::move(shading));
 }
 
 /// What the scene says beside its meshes.
@@ -155,10 +238,12 @@ void set_up_shading(World& world) {
         };
     world.shading.occluded_by_all = {};
     world.shading.caustic = {};
+    if (has_caustics(world))
+        world.shading.occluded_by_all = [self = &world](const Segments& segments) {
+            return meets_anything(*self, segments);
+        };
+    if (world.blended) world.blended->set_up(world.shading);
     if (!has_caustics(world)) return;
-    world.shading.occluded_by_all = [self = &world](const Segments& segments) {
-        return meets_anything(*self, segments);
-    };
     world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {
         return irradiance(caustic_lights(*self).by_light[light], receiver);
     };
@@ -222,7 +307,9 @@ SceneReuse change_scene(World& world, Scene scene, const Warn& warn) {
         }
         const auto before = std::find_if(world.optics.begin(), world.optics.end(),
                                          [id](const Optic& optic) { return optic.mesh == id; });
-        if (is_kept(id) && before != world.optics.end()) {
+        if (is_kept(id) && before != world.optics.end() &&
+            has_same_normals(world.scene.materials[before->material],
+                             scene.materials[scene.meshes[id].material])) {
             optics.push_back(*before);
             optics.back().mirror = is_mirror(scene.materials[before->material]);
             kept_optics.push_back(static_cast<Id>(before - world.optics.begin()));
@@ -234,6 +321,7 @@ SceneReuse change_scene(World& world, Scene scene, const Warn& warn) {
         }
     }
 
+    kept.objects = kept.objects && blending_materials(world.scene) == blending_materials(scene);
     world.scene = std::move(scene);
     world.optics = std::move(optics);
     world.mesh_digests = std::move(digests);

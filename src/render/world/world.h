@@ -22,6 +22,7 @@
 
 namespace trilens {
 
+class BlendedSurfaces;
 struct CausticLights;
 class VolumeGeometry;
 
@@ -45,11 +46,12 @@ struct World {
     World& operator=(const World&) = delete;
 
     Scene scene;
-    TriangleScene objects;  // every triangle of the meshes that are objects
+    TriangleScene objects;  // the triangles of the meshes that are objects, but for those that blend
     ShadeScene shading;     // of `objects`
     std::vector<Optic> optics;
     std::vector<std::string> names;                              // object id -> name
     std::vector<std::shared_ptr<const VolumeGeometry>> volumes;  // of scene.volumes
+    std::unique_ptr<BlendedSurfaces> blended;                    // null: nothing blends
     std::unique_ptr<WorldGeometry> geometry;
     std::vector<std::string> mesh_digests;  // of scene.meshes, once change_scene has asked for them
 };

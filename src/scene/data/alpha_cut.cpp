@@ -9,7 +9,6 @@ namespace trilens {
 namespace {
 
 constexpr double kMostCells = 1 << 22;  // of one triangle
-constexpr double kBlendCutoff = 0.5;
 
 /// A place on the picture in half texels from the first texel's middle; y downward.
 using GridPlace = Vec2;
@@ -192,8 +191,8 @@ class MeshCutter {
   private:
     void cut(std::size_t t) {
         const Material& material = materials_[from_.material[t]];
-        if (material.alpha_mode == AlphaMode::kOpaque) return keep(t);
-        const double cutoff = material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : kBlendCutoff;
+        if (material.alpha_mode != AlphaMode::kMask) return keep(t);
+        const double cutoff = material.alpha_cutoff;
         const Texture* texture = material.base_color_texture.get();
         const auto& uvs = material.base_color_sampler.uv_set == 0 ? from_.uvs : from_.second_uvs;
         if (!texture || texture->alpha.empty() || uvs.empty() || !(material.alpha_factor > 0)) {
@@ -260,9 +259,14 @@ class MeshCutter {
 
 }  // namespace
 
+bool blends(const Material& material) {
+    const bool has_alpha = material.base_color_texture && !material.base_color_texture->alpha.empty();
+    return material.alpha_mode == AlphaMode::kBlend && (material.alpha_factor < 1 || has_alpha);
+}
+
 AlphaCut cut_by_alpha(ObjectMesh& mesh, const std::vector<Material>& materials) {
     const bool any = std::any_of(mesh.material.begin(), mesh.material.end(), [&](Id material) {
-        return materials[material].alpha_mode != AlphaMode::kOpaque;
+        return materials[material].alpha_mode == AlphaMode::kMask;
     });
     if (!any) return {};
     const ObjectMesh whole = std::move(mesh);

@@ -9,6 +9,9 @@
 
 namespace trilens {
 
+/// Whether surfaces of this material show what lies behind in part.
+bool blends(const Material& material);
+
 /// What was done.
 struct AlphaCut {
     std::size_t cut = 0;       // triangles that were cut or taken away
@@ -18,8 +21,8 @@ struct AlphaCut {
 /// Takes away what is less opaque than the cutoff of the triangles' materials. Opacity is the alpha channel
 /// of the base colour's picture, bilinear between its texels, times `alpha_factor`; its contour is followed
 /// exactly along the texels' grid and its half steps, and straight between [marching squares: Lorensen and
-/// Cline 1987, in the plane]. uvs, normals and materials go with the pieces. Materials whose alpha_mode is
-/// kOpaque are left alone; kBlend is cut as kMask at 0.5.
+/// Cline 1987, in the plane]. uvs, normals and materials go with the pieces. Materials of another alpha_mode
+/// than kMask are left alone.
 AlphaCut cut_by_alpha(ObjectMesh& mesh, const std::vector<Material>& materials);
 
 }  // namespace trilens

@@ -157,6 +157,10 @@ void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {
     require(mesh.resolution >= 1 && mesh.resolution <= kMaxResolution, place + "/resolution",
             "is not in 1.." + std::to_string(kMaxResolution));
     require(mesh.primitive || !mesh.cage.points.empty(), place, "an optic has a primitive or a cage");
+    require(mesh.cage_uvs.empty() || mesh.cage_uvs.size() == mesh.cage.face_vertex_indices.size(),
+            place + "/uvs", "needs one entry per corner of a face, or none");
+    require(!mesh.maps_normals || scene_.materials[mesh.material].normal_texture.picture, place,
+            "maps normals of a picture that its material does not have");
     require(
         is_finite(mesh.normals.center) && is_finite(mesh.normals.amplitude) && is_finite(mesh.normals.scale),
         place + "/normals", "is not finite");

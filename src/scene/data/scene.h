@@ -100,11 +100,13 @@ struct Mesh {
     ObjectMesh object;
     std::optional<Primitive> primitive;
     Cage cage;
+    std::vector<Vec2> cage_uvs;  // where normals are mapped: per entry of cage.face_vertex_indices
+    bool maps_normals = false;   // optic: its material's normal map turns its normals
 };
 
 /// Whether the optic's normals are those that the derivatives of its surface have.
 inline bool has_own_normals(const Mesh& optic) {
-    return optic.normals.type == NormalOverride::Type::kSmooth &&
+    return optic.normals.type == NormalOverride::Type::kSmooth && !optic.maps_normals &&
            (optic.primitive || optic.cage.scheme != SubdivisionScheme::kUnsubdivided);
 }
 

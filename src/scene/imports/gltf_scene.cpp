@@ -198,8 +198,6 @@ class SceneWriter {
         const std::string name = material.at("name").get<std::string>();
         const Json before = material;
         for (const auto& [key, value] : before.items()) {
-            if (key == "alphaMode" && material.at(key) == "blend")
-                left_out_.note("what alphaMode BLEND shows through (it is cut out at an alpha of 0.5)", name);
             if (params_.known.material.count(key) == 0) {
                 left_out_.note(key, name);
                 material.erase(key);

@@ -215,6 +215,16 @@ void check_far_points(const Node& node, const Cage& cage) {
     node["file"].fail("point " + std::to_string(*far + 1) + " of the file " + message);
 }
 
+/// The uv that the material's normal map lies by, where it has one.
+void read_optic_uvs(const Node& node, const PolygonMesh& polygons, Mesh& mesh, Reading& reading) {
+    const PlacedTexture& map = reading.scene.materials[mesh.material].normal_texture;
+    if (!map.picture) return;
+    const bool is_second = map.sampler.uv_set == 1 && !polygons.second_uvs.empty();
+    mesh.cage_uvs = is_second ? polygons.second_uvs : polygons.uvs;
+    mesh.maps_normals = !mesh.cage_uvs.empty();
+    if (!mesh.maps_normals) reading.warn(node.place, "has no uv: the normal map of its material is ignored");
+}
+
 void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     if (node.has("shading"))
         node["shading"].fail("is an object's: an optic shows what it reflects and refracts");
@@ -222,6 +232,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     if (node.has("primitive")) {
         if (node.has("fit")) node["fit"].fail("an optic's primitive has its own center and size");
         mesh.primitive = read_primitive(node["primitive"], read_transform(node), node);
+        mesh.maps_normals = reading.scene.materials[mesh.material].normal_texture.picture != nullptr;
         return;
     }
     PolygonMesh polygons =
@@ -235,6 +246,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     check_scheme(node, polygons.cage);
     place_or_fail(polygons, node);
     check_far_points(node, polygons.cage);
+    read_optic_uvs(node, polygons, mesh, reading);
     mesh.cage = std::move(polygons.cage);
     if (mesh.cage.scheme == SubdivisionScheme::kUnsubdivided) mesh.cage.normals = std::move(polygons.normals);
     mesh.face_count = mesh.cage.face_vertex_counts.size();

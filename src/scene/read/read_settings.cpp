@@ -176,8 +176,9 @@ const std::vector<Field<Material>>& material_fields() {
                 "mirrors its surroundings is an optic."),
             part<Material>("metallicRoughnessTexture", ref("texture"),
                            "Factors: green of roughness, blue of metallic; numbers, not colours."),
-            part<Material>("normalTexture", ref("texture"),
-                           "Of an object's tangent space: +X along u, +Y along v upward; numbers."),
+            part<Material>(
+                "normalTexture", ref("texture"),
+                "+X along u, +Y along v upward; numbers. An optic's normals are turned by it, too."),
             part<Material>("occlusionTexture", ref("texture"),
                            "Red: share of ambient and environment light that arrives; numbers."),
             setting("emissiveFactor", &Material::emissive_factor, ref("color"),
@@ -195,7 +196,8 @@ const std::vector<Field<Material>>& material_fields() {
             choice(
                 "alphaMode", &Material::alpha_mode,
                 "object: mask: what is less opaque than 'alphaCutoff' is not there, by the alpha channel of "
-                "baseColorTexture times 'alphaFactor'; blend: drawn as a mask at 0.5."),
+                "baseColorTexture times 'alphaFactor'; blend: by as much it hides what lies behind; it casts "
+                "no shadow, and ids are of what lies behind."),
             setting("alphaCutoff", &Material::alpha_cutoff, number_in(0, 2)),
             setting("alphaFactor", &Material::alpha_factor, ref("share"))};
     }();

@@ -1,0 +1,40 @@
+// Blended surfaces (glTF's alphaMode BLEND): triangles that show what lies behind in part, apart from those
+// that hide it.
+#pragma once
+
+#include <vector>
+
+#include "base/raymesh/ray_mesh.h"
+#include "intersect/box_tree.h"
+#include "render/world/world.h"
+#include "volume/volume_integral.h"
+
+namespace trilens {
+
+/// The blended triangles of a world's objects. Thread-safe to read.
+class BlendedSurfaces {
+  public:
+    BlendedSurfaces(TriangleScene triangles, ShadeScene shading);
+    BlendedSurfaces(const BlendedSurfaces&) = delete;
+    BlendedSurfaces& operator=(const BlendedSurfaces&) = delete;
+
+    /// Takes over lights, materials and shadows from the shading of the other objects. Light that comes over
+    /// optics is not followed to blended surfaces.
+    void set_up(const ShadeScene& others);
+
+    const TriangleScene& triangles() const { return triangles_; }
+
+    /// All that lie on the ray between t = 0 and t = until, ties with `until` included, from near to far;
+    /// where two of one t meet along an edge, one of them.
+    std::vector<Hit> crossings(const Ray& ray, double until) const;
+
+    /// What each of them adds: its colour in proportion to its opacity over what lies behind.
+    std::vector<VolumeLight> shade(const Ray& ray, std::span<const Hit> crossings) const;
+
+  private:
+    TriangleScene triangles_;
+    ShadeScene shading_;
+    BoxTree tree_;
+};
+
+}  // namespace trilens
