@@ -18,6 +18,8 @@ constexpr double kEvenQuarters = 0.06;
 constexpr double kThin = 0.1;
 /// What a point without a footprint is looked at by: a share of the scene's size.
 constexpr double kPointSize = 1e-4;
+/// Of one source; some 600 bytes each. Where footprints ask for more, they are made anew for each.
+constexpr std::size_t kMostKept = 1 << 18;
 
 using Ends = BeamEnds;
 
@@ -34,7 +36,8 @@ RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, co
     : space_(space),
       source_(source),
       beams_(&beams),
-      division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())) {
+      division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())),
+      kept_(std::make_unique<std::atomic<std::size_t>>(0)) {
     find_sides();
 }
 
@@ -85,11 +88,8 @@ BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const 
     return end;
 }
 
-std::unique_ptr<BeamDivision> RefinedBeams::divide(Id beam, const Ends& end) const {
-    auto division = std::make_unique<BeamDivision>();
-    for (std::size_t k = 0; k < 3; ++k)
-        division->middle[k] = middle(beam, *end[(k + 1) % 3], *end[(k + 2) % 3]);
-    return division;
+void RefinedBeams::divide(Id beam, const Ends& end, BeamDivision& into) const {
+    for (std::size_t k = 0; k < 3; ++k) into.middle[k] = middle(beam, *end[(k + 1) % 3], *end[(k + 2) % 3]);
 }
 
 const BeamDivision& RefinedBeams::division(Id beam) const {
@@ -101,7 +101,23 @@ const BeamDivision& RefinedBeams::division(Id beam) const {
 }
 
 const BeamDivision& RefinedBeams::division(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of) const {
-    return of.get([&] { return divide(beam, end); });
+    return of.get([&] {
+        auto division = std::make_unique<BeamDivision>();
+        divide(beam, end, *division);
+        return division;
+    });
+}
+
+/// The same, in `own` where enough is kept.
+const BeamDivision& RefinedBeams::division_for_now(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of,
+                                                   std::optional<BeamDivision>& own) const {
+    if (const BeamDivision* kept = of.find()) return *kept;
+    if (kept_->load(std::memory_order_relaxed) < kMostKept) {
+        kept_->fetch_add(1, std::memory_order_relaxed);
+        return division(beam, end, of);
+    }
+    divide(beam, end, own.emplace());
+    return *own;
 }
 
 BeamCorners RefinedBeams::corners(Id beam, const BeamEnds& end) const {
@@ -165,7 +181,9 @@ struct RefinedBeams::Visit {
             at[k] = *on;
         }
         if (is_beyond(std::span(at).first(3), guess)) return;
-        const BeamDivision& by = level == 0 ? refined.division(beam) : refined.division(beam, end, division);
+        std::optional<BeamDivision> own;
+        const BeamDivision& by =
+            level == 0 ? refined.division(beam) : refined.division_for_now(beam, end, division, own);
         double bulge = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, by.middle[k]);

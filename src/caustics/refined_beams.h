@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/util/parallel.h"
@@ -23,7 +25,8 @@ struct BeamDivision {
 std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle);
 
 /// Beams as exact rays have them: each is divided where, and as far as, a footprint asks, and what was traced
-/// is kept. What is found does not depend on who asked before. Thread-safe.
+/// is kept, of footprints up to kMostKept divisions. What is found does not depend on who asked before.
+/// Thread-safe.
 class RefinedBeams {
   public:
     RefinedBeams() = default;
@@ -52,7 +55,9 @@ class RefinedBeams {
     struct Visit;
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
     void find_sides();
-    std::unique_ptr<BeamDivision> divide(Id beam, const BeamEnds& end) const;
+    void divide(Id beam, const BeamEnds& end, BeamDivision& into) const;
+    const BeamDivision& division_for_now(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of,
+                                         std::optional<BeamDivision>& own) const;
 
     LightSpace space_;
     BeamSource source_;
@@ -60,6 +65,7 @@ class RefinedBeams {
     std::vector<std::array<Id, 3>> side_;             // of each beam, across from its ends: of side_middle_
     std::vector<BeamEnd> side_middle_;                // neighbours share them
     std::unique_ptr<Lazy<BeamDivision>[]> division_;  // by beam
+    std::unique_ptr<std::atomic<std::size_t>> kept_;  // divisions that footprints asked for
 };
 
 }  // namespace trilens

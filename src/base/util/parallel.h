@@ -1,6 +1,7 @@
 // Parallel loops over independent items: the door to TBB; a task on threads of its own; lazy initialisation.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <initializer_list>
@@ -60,13 +61,19 @@ class Lazy {
     /// `make` returns a std::unique_ptr<T>.
     template <typename Make>
     const T& get(Make&& make) const {
-        std::call_once(made_, [&] { run_isolated([&] { value_ = std::forward<Make>(make)(); }); });
+        std::call_once(made_, [&] {
+            run_isolated([&] { value_ = std::forward<Make>(make)(); });
+            ready_.store(value_.get(), std::memory_order_release);
+        });
         return *value_;
     }
+    /// What was made; null where nothing is yet.
+    const T* find() const { return ready_.load(std::memory_order_acquire); }
 
   private:
     mutable std::once_flag made_;
     mutable std::unique_ptr<T> value_;
+    mutable std::atomic<const T*> ready_ = nullptr;
 };
 
 }  // namespace trilens
