@@ -1,12 +1,15 @@
-// libFuzzer's entry: one program for all targets, chosen by TRILENS_FUZZ_TARGET.
+// libFuzzer's entry: one program for all targets, chosen by TRILENS_FUZZ_TARGET; "schema" prints the schema
+// of scenes, whose words are a dictionary.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <string_view>
 
 #include "base/util/parallel.h"
 #include "fuzz/target.h"
+#include "trilens/scene.h"
 
 namespace {
 
@@ -16,6 +19,10 @@ const trilens_fuzz::FuzzTarget* target = nullptr;
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     const char* name = std::getenv("TRILENS_FUZZ_TARGET");
+    if (name && std::string_view(name) == "schema") {
+        std::puts(trilens::scene_schema());
+        std::exit(0);
+    }
     target = trilens_fuzz::find_target(name ? name : "");
     if (target == nullptr) {
         std::fprintf(stderr, "TRILENS_FUZZ_TARGET names one of:\n");

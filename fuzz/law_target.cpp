@@ -1,16 +1,19 @@
 // Fuzz target of laws: a random scene is drawn, and what holds for every scene is asked of its pictures.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "base/util/parallel.h"
 #include "fuzz/random_scene.h"
+#include "fuzz/ray_laws.h"
 #include "fuzz/target.h"
+#include "projector/kernel/kernel.h"
 #include "render/world/world.h"
 #include "tests/laws/agreement.h"
 #include "trilens/compare.h"
 #include "trilens/image.h"
-#include "trilens/project.h"
 #include "trilens/render.h"
 #include "trilens/scene.h"
 
@@ -27,15 +30,27 @@ PictureRequest picture(int resolution) {
     return request;
 }
 
-/// The same bytes whatever the number of threads.
+Bytes encoded(const Renderer& renderer, const PictureRequest& request) {
+    return encode_image(renderer.draw(request).image);
+}
+
+/// The same bytes whatever the number of threads and the instruction set, and whether they are encoded while
+/// they are drawn or afterwards.
 Bytes drawn(const Renderer& renderer, const PictureRequest& request) {
     const int before = thread_count();
     set_thread_count(1);
-    const Bytes one = encode_image(renderer.draw(request).image);
+    const Bytes one = encoded(renderer, request);
     set_thread_count(3);
-    const Bytes three = encode_image(renderer.draw(request).image);
+    require(encoded(renderer, request) == one, "a picture depends on the number of threads");
+    require(renderer.draw_exr(request).exr == one, "a picture that is encoded while it is drawn is another");
     set_thread_count(before);
-    require(one == three, "a picture depends on the number of threads");
+    const std::vector<std::string> sets = kernel_instruction_sets();
+    for (std::size_t i = 1; i < sets.size(); ++i) {
+        use_instruction_set(sets[i]);
+        const bool same = encoded(renderer, request) == one;
+        use_instruction_set("");
+        require(same, "a picture is another with " + sets[i]);
+    }
     return one;
 }
 
@@ -58,7 +73,7 @@ void require_redrawn(const Image& image, const Bytes& bytes, const PictureReques
     SceneRequest drawn_scene;
     drawn_scene.file = file;
     const Renderer again(load_scene(drawn_scene));
-    require(encode_image(again.draw(request).image) == bytes, "a picture's header draws another picture");
+    require(encoded(again, request) == bytes, "a picture's header draws another picture");
     std::map<std::string, std::string> said = image.metadata;
     std::erase_if(said, [](const auto& entry) { return entry.second.empty(); });  // they are not kept
     require(read_image(file).metadata == said, "a picture's header is another once it is read");
@@ -83,23 +98,87 @@ void require_window(const Renderer& renderer, const Image& whole, PictureRequest
     }
 }
 
-/// Each point has its answer; an image's steps are its events, and its weights are shares of light.
-void require_images(const Renderer& renderer, const Scene& scene) {
-    std::vector<Vec3> points;
-    for (const Mesh& mesh : scene.meshes)
-        if (!mesh.object.points.empty()) points.push_back(mesh.object.points.front());
-    if (points.empty()) return;
-    ProjectRequest request;
-    request.max_images = 6;
-    const std::vector<PointProjection> found = renderer.project(points, request);
-    require(found.size() == points.size(), "points without an answer");
-    for (std::size_t p = 0; p < found.size(); ++p)
-        for (const WorldImage& image : found[p].images) {
-            require(image.steps.size() == image.events.size() || image.events.empty(),
-                    "an image whose events are not its steps");
-            for (int c = 0; c < 3; ++c)
-                require(image.weight[c] >= 0 && image.weight[c] <= 1 + 1e-9, "a weight that is no share");
-        }
+/// A renderer that goes on with another scene, and back again, draws what a new one draws.
+void require_changed(const Scene& scene, const PictureRequest& request, const Bytes& bytes) {
+    Scene other = scene;
+    const auto optics = std::ranges::count(other.meshes, Role::kOptic, &Mesh::role);
+    if (optics > 1)
+        other.meshes.erase(other.meshes.begin());
+    else
+        other.meshes.front().resolution = other.meshes.front().resolution % 7 + 2;
+    const Bytes expected = encoded(Renderer(other), request);
+    Renderer renderer(scene);
+    encoded(renderer, request);
+    renderer.change(other);
+    require(encoded(renderer, request) == expected, "a renderer that is changed draws another picture");
+    renderer.change(scene);
+    require(encoded(renderer, request) == bytes, "a renderer that is changed back draws another picture");
+}
+
+/// A scene that is a power of two times as large looks the same, to the last bit.
+void require_any_size(std::string_view bytes, const Image& image, const PictureRequest& request) {
+    const Image large = Renderer(parse_scene(make_random_scene(bytes, 1024).json)).draw(request).image;
+    for (const char* name : {"R", "G", "B"}) {
+        const std::vector<float>&a = image.find(name)->floats(), &b = large.find(name)->floats();
+        const auto off = std::ranges::mismatch(a, b);
+        if (off.in1 == a.end()) continue;
+        const auto at = static_cast<int>(off.in1 - a.begin());
+        throw Defect(
+            fmt::format("a scene that is larger looks otherwise: {} of pixel {},{} is {}, enlarged {}", name,
+                        at % image.width, at / image.width, *off.in1, *off.in2));
+    }
+}
+
+/// A picture is itself; what is measured of two is the same, whichever is the reference.
+void require_measured(const Image& a, const Image& b) {
+    require(compare(a, a).metrics.max == 0, "a picture differs from itself");
+    const Metrics there = compare(a, b).metrics, back = compare(b, a).metrics;
+    require(
+        there.rmse == back.rmse && there.mae == back.mae && there.max == back.max && there.p95 == back.p95,
+        "a and b are otherwise apart than b and a");
+    require(std::fabs(there.flip - back.flip) <= 1e-6, "FLIP of a and b is not that of b and a");
+    for (const LayerComparison& layer : compare_layers(a, a)) {
+        if (layer.displacement && layer.displacement->summary)
+            require(layer.displacement->summary->max == 0, "a picture is displaced against itself");
+        if (layer.displacement)
+            require(layer.displacement->lost == 0 && layer.displacement->missing == 0,
+                    "a picture has lost something of itself");
+    }
+    const SeenMismatch seen = total_seen(compare_layers(a, b)), mirrored = total_seen(compare_layers(b, a));
+    require(seen.pixels == mirrored.pixels && seen.coverage_mismatch == mirrored.coverage_mismatch &&
+                seen.object_mismatch == mirrored.object_mismatch &&
+                seen.primitive_mismatch == mirrored.primitive_mismatch,
+            "what a and b show differs otherwise than what b and a do");
+}
+
+void require_laws(const RandomScene& random, std::string_view bytes) {
+    const Scene scene = parse_scene(random.json);
+    const Renderer renderer(scene);
+    const PictureRequest request = picture(0);
+    const Bytes bytes_of_picture = drawn(renderer, request);
+    const Image image = renderer.draw(request).image;
+    require_light(image, random.is_unlit);
+    require_window(renderer, image, request);
+    require_redrawn(image, bytes_of_picture, request);
+    require_changed(scene, request, bytes_of_picture);
+    if (random.has_exact_scales) require_any_size(bytes, image, request);
+    require_measured(image, renderer.draw(picture(random.other_resolution)).image);
+
+    PictureRequest exact = request;
+    exact.engine = Engine::kLimitTruth;
+    require_light(renderer.draw(exact).image, random.is_unlit);
+    const trilens_test::Agreement agreement = trilens_test::compare_engines(renderer.world());
+    require(agreement.off_edge == 0,
+            "the projector and the rays of its facets differ off edges: " + agreement.first_off_edge);
+    Scene short_paths = scene;  // all paths over several optics are searched, whose number grows with depth
+    short_paths.render.max_depth = std::min(scene.render.max_depth, 1);
+    const Renderer searching(short_paths);
+    require_images(searching, short_paths);
+    require_shots(renderer, scene, searching);
+    renderer.explain(request, image.width / 2, image.height / 2);
+    LineChoice lines;
+    lines.folds = lines.facets = true;
+    require(renderer.draw_lines(request.frame, lines).svg.ends_with("</svg>\n"), "a drawing without an end");
 }
 
 }  // namespace
@@ -107,24 +186,11 @@ void require_images(const Renderer& renderer, const Scene& scene) {
 Answer random_scene(std::string_view bytes) {
     const RandomScene random = make_random_scene(bytes);
     return answer([&] {
-        const Scene scene = parse_scene(random.json);
-        const Renderer renderer(scene);
-        const PictureRequest request = picture(0);
-        const Bytes bytes_of_picture = drawn(renderer, request);
-        const Image image = renderer.draw(request).image;
-        require_light(image, random.is_unlit);
-        require_redrawn(image, bytes_of_picture, request);
-        require_window(renderer, image, request);
-
-        const Image other = renderer.draw(picture(random.other_resolution)).image;
-        require(compare(image, image).metrics.max == 0, "a picture differs from itself");
-        require(compare(image, other).metrics.rmse == compare(other, image).metrics.rmse,
-                "a and b are otherwise apart than b and a");
-
-        const trilens_test::Agreement agreement = trilens_test::compare_engines(renderer.world());
-        require(agreement.off_edge == 0,
-                "the projector and the rays of its facets differ off edges: " + agreement.first_off_edge);
-        require_images(renderer, scene);
+        try {
+            require_laws(random, bytes);
+        } catch (const ComputationError& error) {  // a legal scene has a picture
+            throw Defect(std::string("a scene that was read is not drawn: ") + error.what());
+        }
     });
 }
 

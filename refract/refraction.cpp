@@ -104,6 +104,7 @@ bool is_beyond_critical(double cos_incident, double eta) {
 }
 
 double fresnel_reflectance(double cos_incident, double eta) {
+    if (eta == 1) return 0;  // and no rounding, which would be followed as a path
     const double cos_i = std::clamp(cos_incident, 0.0, 1.0);
     const double sin2 = eta * eta * (1 - cos_i * cos_i);
     if (sin2 >= 1) return 1;

@@ -38,8 +38,8 @@ RayMesh make_refraction(const SurfaceGrid& grid, std::span<const CornerView> vie
 /// as grazing. eta: refractive index where the ray comes from over the index where it goes.
 std::optional<Vec3> refracted(const Vec3& incoming, const Vec3& unit_normal, double eta);
 
-/// The share of unpolarised light that the interface reflects, 0..1 (1 on total internal reflection).
-/// cos_incident: cosine of the angle of incidence, 0..1; eta: refractive
+/// The share of unpolarised light that the interface reflects, 0..1 (1 on total internal reflection;
+/// exactly 0 where both sides are one). cos_incident: cosine of the angle of incidence, 0..1; eta: refractive
 /// index where the ray comes from over the index where it goes.
 /// Source: the Fresnel equations, Born and Wolf, Principles of Optics, section 1.5.2.
 double fresnel_reflectance(double cos_incident, double eta);

@@ -312,4 +312,8 @@ double LimitTracer::self_hit_t_min(const Ray& ray) const {
     return speed > 0 ? kSelfHit * data_->size / speed : 0;
 }
 
+double LimitTracer::size() const {
+    return data_->size;
+}
+
 }  // namespace trilens

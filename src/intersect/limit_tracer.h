@@ -58,6 +58,9 @@ class LimitTracer {
     /// direction.
     double self_hit_t_min(const Ray& ray) const;
 
+    /// Half the diagonal of a box about the surface's faces, or of their corners and middles.
+    double size() const;
+
   private:
     struct Data;
     std::unique_ptr<Data> data_;

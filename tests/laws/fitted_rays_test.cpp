@@ -248,3 +248,33 @@ TEST_CASE("an error asked for does not depend on crops or threads", "[laws][law]
     CHECK(same_in(whole, draw_frame(*world, frame, Engine::kExact, window).image));
     set_thread_count(0);
 }
+
+TEST_CASE("a scene that is a thousand times as large looks the same, to the last bit, by parallel rays too",
+          "[laws][law][rays]") {
+    const auto drawn = [](const std::string& camera, const std::string& grid, double size) {
+        const auto at = [size](double x, double y, double z) {
+            return "[" + std::to_string(size * x) + "," + std::to_string(size * y) + "," +
+                   std::to_string(size * z) + "]";
+        };
+        const std::string world =
+            R"({"version":1,"film":{"width":40,"height":30},"cameras":[{"type":)" + camera +
+            (camera == R"("perspective")" ? "" : R"(,"ymag":)" + std::to_string(1.5 * size)) +
+            R"(,"lookAt":{"eye":)" + at(0.5, 1, 4) + R"(,"at":)" + at(0, 0, 0) +
+            R"(}}],"materials":[{"name":"glass","transmissionFactor":1},{"name":"floor","unlit":true,"baseColorTexture":
+            {"pattern":"checker","colors":[[0.1,0.2,0.9],[0.9,0.8,0.1]],"count":[8,8]}}],
+            "render":{"maxDepth":3},"meshes":[{"name":"ball","role":"optic","material":"glass","grid":")" +
+            grid + R"(","primitive":{"type":"sphere","radius":)" + std::to_string(size) +
+            R"(}},{"name":"floor","role":"object","material":"floor","points":[)" + at(-6, -1.5, 6) + "," +
+            at(6, -1.5, 6) + "," + at(6, -1.5, -6) + "," + at(-6, -1.5, -6) +
+            R"(],"faceVertexCounts":[4],"faceVertexIndices":[0,1,2,3],
+            "uvs":[[0,0],[1,0],[1,1],[0,1]],"uvIndices":[0,1,2,3]}]})";
+        return draw_picture(*world_from("sizes", world, 5), {}, {}, {}).image.find("R")->floats();
+    };
+    for (const char* const camera : {R"("perspective")", R"("orthographic")", R"("oblique","angle":35)"})
+        for (const char* const grid : {"surface", "screen"}) {
+            INFO(camera << ", grid " << grid);
+            const std::vector<float> small = drawn(camera, grid, 0.125), large = drawn(camera, grid, 128);
+            CHECK(small == large);
+            CHECK(*std::ranges::max_element(small) > 0.1f);
+        }
+}

@@ -70,27 +70,30 @@ FitValue row_times(const Equations& equations, std::size_t row, std::span<const 
     return product;
 }
 
-/// The square of how far a ray is from what its sample asks, in parts of its direction's length.
-double relative_miss(const FitSample& sample, std::span<const FitValue> values) {
+/// The square of how far a ray is from what its sample asks, in parts of its direction's length, for which
+/// `unit` stands where that is 1.
+double relative_miss(const FitSample& sample, std::span<const FitValue> values, double unit) {
     double miss = 0, direction = 0;
     for (std::size_t p = 0; p < kRayParts; ++p) {
         double off = -sample.value[p];
         for (std::size_t k = 0; k < 3; ++k)
             off += sample.weights[static_cast<int>(k)] * values[sample.corners[k]][p];
-        miss += off * off;
-        if (p >= kRayParts / 2) direction += sample.value[p] * sample.value[p];
+        const bool is_direction = p >= kRayParts / 2;
+        const double length2 = is_direction ? unit * unit : 1;
+        miss += length2 * (off * off);
+        if (is_direction) direction += length2 * (sample.value[p] * sample.value[p]);
     }
     return direction > 0 ? miss / direction : 0;
 }
 
 }  // namespace
 
-void even_out(std::span<FitSample> samples, std::span<const FitValue> values) {
+void even_out(std::span<FitSample> samples, std::span<const FitValue> values, double unit) {
     for (std::size_t first = 0, end = 0; first < samples.size(); first = end) {
         double miss = 0, whole = 0;
         for (; end < samples.size() && samples[end].corners == samples[first].corners; ++end) {
             const double share = samples[end].measure;
-            miss += share * relative_miss(samples[end], values);
+            miss += share * relative_miss(samples[end], values, unit);
             whole += share;
         }
         const double scale = 1 / (std::sqrt(miss / whole) + kNoMiss);

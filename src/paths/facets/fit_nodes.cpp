@@ -86,12 +86,12 @@ bool takes_part(const FacetPart& part) {
     });
 }
 
-void fit_node(std::vector<FitSample>& samples, PathNode& node) {
+void fit_node(std::vector<FitSample>& samples, PathNode& node, double unit) {
     std::vector<FitValue> values;
     values.reserve(node.mesh.rays.size());
     for (std::size_t c = 0; c < node.mesh.rays.size(); ++c)
         values.push_back(value_of(node.mesh.rays[c], node.next[c]));
-    even_out(samples, values);
+    even_out(samples, values, unit);
     fit_linear(samples, values);
     for (std::size_t c = 0; c < values.size(); ++c) {
         const FitValue& v = values[c];
@@ -135,7 +135,7 @@ void fit_alone(const FittedLeaf& leaf, std::vector<PathNode>& nodes) {
     }
 }
 
-void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes) {
+void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes, double unit) {
     std::vector<std::vector<FitSample>> samples(nodes.size());
     for (const FittedLeaf& one : leaves) {
         if (!takes_part(*one.part)) continue;
@@ -146,7 +146,7 @@ void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes)
         }
     }
     for (std::size_t n = 0; n < nodes.size(); ++n)
-        if (!samples[n].empty()) fit_node(samples[n], nodes[n]);
+        if (!samples[n].empty()) fit_node(samples[n], nodes[n], unit);
 }
 
 }  // namespace trilens

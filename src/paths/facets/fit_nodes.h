@@ -27,8 +27,9 @@ struct FitSample {
 /// Divides the measure of each facet's samples, which stand side by side, by how far the values as they are
 /// miss them (root of the mean square, in parts of the direction's length). The sum below is then one of
 /// errors, no longer of their squares: a facet in which rays turn much, beside a crease or at a silhouette,
-/// does not draw its neighbours' corners away from what they ask. Flat mirrors stay exact.
-void even_out(std::span<FitSample> samples, std::span<const FitValue> values);
+/// does not draw its neighbours' corners away from what they ask. Flat mirrors stay exact. A direction of
+/// length 1 is `unit` of the scene's lengths long: parallel rays' directions are no lengths themselves.
+void even_out(std::span<FitSample> samples, std::span<const FitValue> values, double unit);
 
 /// Sets the values at corners so that the sum over samples of measure * |interpolated - value|^2 is least.
 /// Values that are exact already stay as they are; corners that no sample names keep theirs, and where the
@@ -55,8 +56,8 @@ struct FittedLeaf {
 /// rule with weights 1/20, 2/15 and 9/20 integrates cubics (Stroud, Approximate Calculation of Multiple
 /// Integrals, 1971, T2: 3-1). Leaves with a corner turned away from the eye take no part, so the fit ends at
 /// silhouettes; and it ends where corners are not shared: at creases and boundaries of the grid, at borders
-/// of histories.
-void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes);
+/// of histories. `unit`: as even_out has it.
+void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes, double unit);
 
 /// The same for a part of a facet by itself, whose corners are its own: what it shows does not pass over into
 /// what its neighbours show, by less than the error that it was divided for.

@@ -174,7 +174,7 @@ void prepare_facets(PathBuild& build, std::span<const Id> facets) {
                 whole.push_back(leaf);
         }
     }
-    if (build.in.params.fit) fit_nodes(whole, build.out.nodes);
+    if (build.in.params.fit) fit_nodes(whole, build.out.nodes, parallel_length(build.in.context).value_or(1));
     divide_by_error(build, open);
 }
 

@@ -157,6 +157,11 @@ PathProbe probe_chord(const ProbeContext& context, const Chord& chord, const Pro
     return probe;
 }
 
+std::optional<double> parallel_length(const ProbeContext& context) {
+    if (!context.camera.parallel) return std::nullopt;
+    return context.world->optics[context.optic].tracer->size();
+}
+
 void follow_all(const ProbeContext& context, PathProbe& probe, double least_weight) {
     if (probe.principal_only) follow(context, probe, least_weight);
 }
@@ -182,7 +187,7 @@ void set_ray_scale(const ProbeContext& context, PathProbe& probe) {
     }
     // Solid angles over that of the same patch seen head-on. Those before and after are differences of the
     // same rays, so that flat mirrors and plates have 1 to rounding.
-    const double eye = length(probe.incident);
+    const double eye = parallel_length(context).value_or(length(probe.incident));
     const double head_on =
         length(cross(side[0].place.point - probe.place.point, side[1].place.point - probe.place.point)) /
         (eye * eye);

@@ -126,6 +126,10 @@ PathProbe probe_chord(const ProbeContext& context, const Chord& chord, const Pro
 /// Follows all paths of a probe of which the principal ones alone were followed, down to `least_weight`.
 void follow_all(const ProbeContext& context, PathProbe& probe, double least_weight);
 
+/// What stands for the way from the eye where rays are parallel, which come from no place: the optic's size.
+/// Whatever is measured by it is then the same in a scene that is larger as a whole. None for other cameras.
+std::optional<double> parallel_length(const ProbeContext& context);
+
 /// Follows the paths of a probe once more from two places beside it.
 void probe_offsets(const ProbeContext& context, PathProbe& probe);
 
