@@ -21,14 +21,8 @@
 
 namespace trilens {
 
-/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs and
-/// normals may end early: triangles beyond have zeros.
-struct ShadeScene {
-    const TriangleScene* triangles = nullptr;
-    std::vector<Id> material;              // index into materials
-    std::vector<std::array<Vec2, 3>> uvs;  // v upward from the picture's bottom; unset triangles hold zeros
-    std::vector<std::array<Vec2, 3>> second_uvs;  // of textures whose sampler says so
-    std::vector<std::array<Vec3, 3>> normals;     // unit per corner; all zero: the triangle is flat
+/// What triangles of one scene are shaded by, whichever they are.
+struct ShadeSurroundings {
     std::vector<Material> materials;
     std::vector<Light> lights;
     Background background;
@@ -48,6 +42,16 @@ struct ShadeScene {
 
     /// Irradiance by light number `light`, one with caustics, over optics.
     std::function<Vec3(std::size_t light, const Receiver&)> caustic;
+};
+
+/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs and
+/// normals may end early: triangles beyond have zeros.
+struct ShadeScene : ShadeSurroundings {
+    const TriangleScene* triangles = nullptr;
+    std::vector<Id> material;              // index into materials
+    std::vector<std::array<Vec2, 3>> uvs;  // v upward from the picture's bottom; unset triangles hold zeros
+    std::vector<std::array<Vec2, 3>> second_uvs;  // of textures whose sampler says so
+    std::vector<std::array<Vec3, 3>> normals;     // unit per corner; all zero: the triangle is flat
 };
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided;

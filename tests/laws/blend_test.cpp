@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "laws/pictures.h"
 #include "laws/worlds.h"
 #include "render/picture/picture.h"
 #include "render/world/blended_surfaces.h"
@@ -39,13 +40,6 @@ std::string pane(const std::string& material, double z) {
 const char* const kMirror = R"(, {"name": "mirror", "role": "optic", "material": "chrome", "primitive":
     {"type": "plane", "center": [0, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [60, 60]}})";
 
-Image drawn(World& world, int spp, const EngineChoice& engine) {
-    world.scene.film.spp = spp;
-    PictureRequest request;
-    request.engine = engine;
-    return draw_picture(world, request, {}, ignore, nullptr).image;
-}
-
 void check_all(const Image& image, const char* channel, double expected) {
     const std::vector<float>& values = image.find(channel)->floats();
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -71,10 +65,10 @@ TEST_CASE("blended panes lie over what is behind, in their order on the ray, dir
     for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth})
         for (const int spp : {1, 2}) {
             INFO("engine " << static_cast<int>(engine) << " spp " << spp);
-            const Image first = drawn(*direct, spp, engine);
+            const Image first = drawn_by(*direct, spp, engine);
             check_all(first, "G", seen);
             check_all(first, "A", 1 - 0.75 * 0.5);
-            const Image second = drawn(*mirrored, spp, engine);
+            const Image second = drawn_by(*mirrored, spp, engine);
             check_all(second, "G", in);
             for (const std::uint32_t id : second.find("reflectID.object")->ids()) CHECK(id == 0);
         }
@@ -90,7 +84,7 @@ TEST_CASE("what blends is opaque where its alpha is 1, and again as soon as the 
     for (Material& material : opaque.materials) material.alpha_factor = 1;
     change_scene(*world, opaque, ignore);
     CHECK(!world->blended);
-    check_all(drawn(*world, 1, Engine::kExact), "G", 1);
+    check_all(drawn_by(*world, 1, Engine::kExact), "G", 1);
 }
 
 TEST_CASE("blended surfaces before and behind a lens: projector and truth show the same", "[laws][law]") {
@@ -104,8 +98,9 @@ TEST_CASE("blended surfaces before and behind a lens: projector and truth show t
         R"(], "lights": [{"type": "point", "position": [2, 3, 3], "intensity": 60, "shadows": true})";
     const auto world =
         world_from("panes", panes(ball, glossy, pane("film", -2) + pane("smoke", 2) + lamp), 32);
-    const Image exact = drawn(*world, 2, Engine::kExact), facets = drawn(*world, 2, Engine::kFacetsTruth),
-                limit = drawn(*world, 2, Engine::kLimitTruth);
+    const Image exact = drawn_by(*world, 2, Engine::kExact),
+                facets = drawn_by(*world, 2, Engine::kFacetsTruth),
+                limit = drawn_by(*world, 2, Engine::kLimitTruth);
     CHECK(exact.find("refractID.object")->ids() == facets.find("refractID.object")->ids());
     double worst = 0, mean = 0;
     for (const char* channel : {"R", "G", "B"}) {

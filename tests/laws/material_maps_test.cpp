@@ -4,6 +4,7 @@
 #include <string>
 
 #include "laws/agreement.h"
+#include "laws/pictures.h"
 #include "laws/worlds.h"
 #include "render/picture/picture.h"
 #include "support/test.h"
@@ -42,30 +43,10 @@ std::unique_ptr<World> ground(const Ground& of) {
                       32);
 }
 
-Image drawn(World& world, int spp, const EngineChoice& engine) {
-    world.scene.film.spp = spp;
-    PictureRequest request;
-    request.engine = engine;
-    return draw_picture(world, request, {}, ignore, nullptr).image;
-}
-
-struct Off {
-    double rms = 0, bias = 0;  // of the truth's mean
-};
-
-Off off(const Image& from, const Image& to) {
-    const std::vector<float>&a = from.find("G")->floats(), &b = to.find("G")->floats();
-    Off result;
-    double mean = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double step = double{a[i]} - double{b[i]};
-        result.rms += step * step;
-        result.bias += step;
-        mean += double{b[i]};
-    }
-    result.rms = std::sqrt(result.rms * static_cast<double>(a.size())) / mean;
-    result.bias /= mean;
-    return result;
+/// In parts of the truth's mean.
+PictureError relative_error(const Image& from, const Image& truth) {
+    const PictureError one = picture_error(from, truth);
+    return {one.rms / one.mean, one.bias / one.mean, one.mean};
 }
 
 const char* const kAbove = R"({"type": "directional", "direction": [-1, -1.5, -1], "intensity": 3})";
@@ -86,7 +67,8 @@ std::vector<Case> cases() {
     const std::string checker =
         R"({"pattern": "checker", "count": [8, 8], "transform": {"scale": [10, 10]}})";
     return {{"matt ripples", ripples, kAbove, 0.06, 0.06, 0.01, 0.5},
-            {"rippled metal", R"("metallicFactor": 1, "roughnessFactor": 0.45, )" + ripples, kAhead, 0.45, 0.28, 0.06},
+            {"rippled metal", R"("metallicFactor": 1, "roughnessFactor": 0.45, )" + ripples, kAhead, 0.45,
+             0.28, 0.06},
             {"two metals", R"("metallicFactor": 1, "roughnessFactor": 1, "metallicRoughnessTexture":
                 {"pattern": "checker", "count": [8, 8], "colors": [[0, 0.7, 1], [0, 0.4, 1]],
                  "transform": {"scale": [10, 10]}})",
@@ -106,12 +88,12 @@ TEST_CASE(
     for (const bool with_mirror : {false, true})
         for (const Case& one : cases()) {
             const auto world = ground({one.material, one.lights, with_mirror});
-            const Image truth = drawn(*world, 16, Engine::kLimitTruth);
-            const Off fragments = off(drawn(*world, 4, Engine::kExact), truth),
-                      single = off(drawn(*world, 1, Engine::kExact), truth),
-                      traced = off(drawn(*world, 1, Engine::kLimitTruth), truth);
+            const Image truth = drawn_by(*world, 16, Engine::kLimitTruth);
+            const PictureError fragments = relative_error(drawn_by(*world, 4, Engine::kExact), truth),
+                               single = relative_error(drawn_by(*world, 1, Engine::kExact), truth),
+                               traced = relative_error(drawn_by(*world, 1, Engine::kLimitTruth), truth);
             world->shading.mips.clear();
-            const Off points = off(drawn(*world, 1, Engine::kExact), truth);
+            const PictureError points = relative_error(drawn_by(*world, 1, Engine::kExact), truth);
             INFO(one.name << (with_mirror ? " with mirror" : "") << ": 4 x 4 rms " << fragments.rms
                           << " bias " << fragments.bias << ", 1 rms " << single.rms << " bias " << single.bias
                           << ", traced rms " << traced.rms << " bias " << traced.bias << ", points rms "
@@ -140,8 +122,8 @@ TEST_CASE("a texture of the second set of uv is the same picture as one of the f
                two = ground({occlusion(R"(, "texCoord": 1)"), lights, true, other + ", " + second}),
                wrong = ground({occlusion(""), lights, true, other + ", " + second});
     for (const int spp : {1, 3}) {
-        const Image expected = drawn(*one, spp, Engine::kExact);
-        CHECK(drawn(*two, spp, Engine::kExact).find("G")->floats() == expected.find("G")->floats());
-        CHECK(drawn(*wrong, spp, Engine::kExact).find("G")->floats() != expected.find("G")->floats());
+        const Image expected = drawn_by(*one, spp, Engine::kExact);
+        CHECK(drawn_by(*two, spp, Engine::kExact).find("G")->floats() == expected.find("G")->floats());
+        CHECK(drawn_by(*wrong, spp, Engine::kExact).find("G")->floats() != expected.find("G")->floats());
     }
 }

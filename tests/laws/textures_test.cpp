@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "laws/agreement.h"
+#include "laws/pictures.h"
 #include "laws/worlds.h"
 #include "render/engines/engine.h"
 #include "render/picture/picture.h"
@@ -61,40 +62,16 @@ std::unique_ptr<World> printed_ground(const std::string& optic, Print print) {
     return world;
 }
 
-Image drawn(World& world, int spp, const EngineChoice& engine) {
-    world.scene.film.spp = spp;
-    PictureRequest request;
-    request.engine = engine;
-    return draw_picture(world, request, {}, ignore, nullptr).image;
-}
-
-struct Off {
-    double rms = 0, bias = 0;
-};
-
-Off off(const Image& from, const Image& to) {
-    const std::vector<float>&a = from.find("G")->floats(), &b = to.find("G")->floats();
-    Off result;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double step = double{a[i]} - double{b[i]};
-        result.rms += step * step;
-        result.bias += step;
-    }
-    result.rms = std::sqrt(result.rms / static_cast<double>(a.size()));
-    result.bias /= static_cast<double>(a.size());
-    return result;
-}
-
 /// How far pictures may be off the truth of `spp` samples.
 void check_prints(const std::vector<std::string>& optics, const std::vector<Print>& prints, int spp) {
     const double most = spp < 64 ? 0.035 : 0.02;  // with few samples most of it is the truth's own noise
     for (const std::string& optic : optics)
         for (const Print print : prints) {
             const auto world = printed_ground(optic, print);
-            const Image truth = drawn(*world, spp, Engine::kLimitTruth);
-            const Off fragments = off(drawn(*world, 4, Engine::kExact), truth),
-                      one = off(drawn(*world, 1, Engine::kExact), truth),
-                      traced = off(drawn(*world, 1, Engine::kLimitTruth), truth);
+            const Image truth = drawn_by(*world, spp, Engine::kLimitTruth);
+            const PictureError fragments = picture_error(drawn_by(*world, 4, Engine::kExact), truth),
+                               one = picture_error(drawn_by(*world, 1, Engine::kExact), truth),
+                               traced = picture_error(drawn_by(*world, 1, Engine::kLimitTruth), truth);
             INFO("optic '" << optic << "', print " << static_cast<int>(print) << ": 4 x 4 rms "
                            << fragments.rms << " bias " << fragments.bias << ", 1 rms " << one.rms << " bias "
                            << one.bias << ", traced rms " << traced.rms << " bias " << traced.bias);

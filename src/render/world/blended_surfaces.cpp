@@ -42,16 +42,9 @@ BlendedSurfaces::BlendedSurfaces(TriangleScene triangles, ShadeScene shading)
     shading_.triangles = &triangles_;
 }
 
-void BlendedSurfaces::set_up(const ShadeScene& others) {
-    shading_.materials = others.materials;
-    shading_.lights = others.lights;
-    shading_.background = others.background;
-    shading_.mips = others.mips;
-    shading_.environment_map = others.environment_map;
-    shading_.environment_samples = others.environment_samples;
-    shading_.size = others.size;
-    shading_.occluded = others.occluded;
-    shading_.occluded_by_all = others.occluded_by_all;
+void BlendedSurfaces::set_up(const ShadeSurroundings& others) {
+    static_cast<ShadeSurroundings&>(shading_) = others;
+    shading_.caustic = {};
 }
 
 std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const {

@@ -20,7 +20,7 @@ class BlendedSurfaces {
 
     /// Takes over lights, materials and shadows from the shading of the other objects. Light that comes over
     /// optics is not followed to blended surfaces.
-    void set_up(const ShadeScene& others);
+    void set_up(const ShadeSurroundings& others);
 
     const TriangleScene& triangles() const { return triangles_; }
 
