@@ -3,7 +3,10 @@
 // from those it makes scalars, and branches in Min and Max.
 #pragma once
 
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wgnu-include-next"
 #include_next <hwy/highway.h>
+#pragma clang diagnostic pop
 #include <wasm_simd128.h>
 
 #include <bit>
