@@ -131,13 +131,6 @@ void check_colours(const World& world, const Case& one) {
 
 /// What is known to be off, and why.
 Case case_of(const std::string& name) {
-    // Where the stem is seen at a grazing angle glass mirrors nearly all light: a fringe of less than a
-    // pixel, a part of a pixel wider where the outline is a chord of the glass's.
-    if (name == "paths/wine-glass") return {name, {}, 0, 6};
-    if (name == "paths/prism") return {name, {}, 1, 1};
-    // The tips of two holes between threads, each smaller than a pixel: off by half a pixel, none of it is
-    // left in one, all of it in the other.
-    if (name == "cameras/cup" || name == "caustic") return {name, {}, 4, 4};
     // Figures of the thesis that show what 5 x 5 facets do: outlines are polygons.
     if (name == "thesis/fig_7_4") return {name, {}, 1, 80};
     if (name == "thesis/fig_7_5") return {name, {}, 27, 27};
