@@ -3,12 +3,12 @@
 //     #include <trilens/scene.h>
 //     const trilens::Renderer renderer(trilens::load_scene({"ball.json"}));
 //     trilens::UnwrapRequest request;
-//     request.target = trilens::parse_target("equirect:2048x1024", renderer.scene());
+//     request.target = trilens::parse_target("equirect:1024x512", renderer.scene());
 //     const trilens::Unwrapped made = trilens::unwrap(renderer, request, {trilens::read_photo("ball.exr")});
 //     trilens::write_image("panorama.exr", made.image);
 //
 //     trilens::FilmMapRequest same;
-//     same.target = trilens::parse_target("equirect:4096x2048", renderer.scene());
+//     same.target = trilens::parse_target("equirect:1024x512", renderer.scene());
 //     trilens::write_map("unwrap.exr", trilens::make_map(renderer, same));
 //
 //     trilens::CausticMapRequest light;
