@@ -16,6 +16,9 @@ constexpr double kStraight = 0.04;
 constexpr double kEvenQuarters = 0.06;
 /// Triangles thinner than this share of the footprint need not be so.
 constexpr double kThin = 0.1;
+/// A piece that would bring less than this share of the light's mean over the scene, if all of it came to the
+/// footprint, is not divided further.
+constexpr double kFaintPiece = 3e-4;
 /// What a point without a footprint is looked at by: a share of the scene's size.
 constexpr double kPointSize = 1e-4;
 /// Of one source; some 600 bytes each. Where footprints ask for more, they are made anew for each.
@@ -39,6 +42,8 @@ RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, co
       division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())),
       kept_(std::make_unique<std::atomic<std::size_t>>(0)) {
     find_sides();
+    const Vec3 all = beams.flux_arriving();
+    faint_ = kFaintPiece * (all.x + all.y + all.z) / (space.size * space.size);
 }
 
 void RefinedBeams::find_sides() {
@@ -150,6 +155,13 @@ struct RefinedBeams::Visit {
         use(corners, fallen);
     }
 
+    bool is_faint(const Ends& end) const {
+        double brightest = 0;
+        for (const BeamEnd* one : end)
+            brightest = std::max(brightest, one->light.x + one->light.y + one->light.z);
+        return refined.corners(beam, end).measure * brightest < refined.faint_ * plane.unit_area;
+    }
+
     bool is_beyond(std::span<const Vec2> at, double room) const {
         for (int c = 0; c < 2; ++c) {
             double low = INFINITY, high = -INFINITY;
@@ -195,7 +207,7 @@ struct RefinedBeams::Visit {
         const std::array<Ends, 4> parts = quarters(end, by.middle);
         const std::array<std::array<Vec2, 3>, 4> on_plane{
             {{at[0], at[5], at[4]}, {at[5], at[1], at[3]}, {at[4], at[3], at[2]}, {at[3], at[4], at[5]}}};
-        const bool is_last = level + 1 >= kMostLevels || is_flat(at, bulge);
+        const bool is_last = level + 1 >= kMostLevels || is_flat(at, bulge) || is_faint(end);
         for (std::size_t i = 0; i < 4; ++i) {
             if (is_last)
                 use_whole(parts[i], on_plane[i]);
