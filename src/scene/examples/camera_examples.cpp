@@ -109,7 +109,7 @@ const char* const kCausticExample = R"json({
     { "name": "thread", "baseColorFactor": [1, 0.72, 0.25], "unlit": true }
   ],
   "meshes": [
-    { "name": "ring", "role": "optic", "material": "chrome", "resolution": 24,
+    { "name": "ring", "role": "optic", "material": "chrome", "resolution": 64,
       "primitive": { "type": "cylinder", "center": [0, 0.3, 0], "axis": [0, 1, 0], "radius": 1, "height": 0.6 } },
     { "name": "table", "role": "object", "material": "oak", "points": [[-5,0,-5],[5,0,-5],[5,0,5],[-5,0,5]], "faceVertexCounts": [4],
       "faceVertexIndices": [3,2,1,0] },
