@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 namespace trilens {
 namespace {
@@ -21,8 +20,8 @@ constexpr double kThin = 0.1;
 constexpr double kFaintPiece = 3e-4;
 /// What a point without a footprint is looked at by: a share of the scene's size.
 constexpr double kPointSize = 1e-4;
-/// Of one source; some 600 bytes each. Where footprints ask for more, they are made anew for each.
-constexpr std::size_t kMostKept = 1 << 18;
+/// Of one source; some 600 bytes each.
+constexpr std::size_t kMostKept = 1 << 17;
 
 using Ends = BeamEnds;
 
@@ -35,12 +34,36 @@ std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 
              {&middle[0], &middle[1], &middle[2]}}};
 }
 
+template <typename Make>
+std::shared_ptr<const BeamDivision> RecentDivisions::get(Id beam, std::uint32_t place, const Make& make) {
+    const std::uint64_t key = std::uint64_t{beam} << 32 | place;
+    Shard& shard = shard_[(key * 0x9e3779b97f4a7c15ULL) >> 58];  // Fibonacci hashing, to 64 shards
+    {
+        const std::lock_guard hold(shard.lock);
+        const auto at = shard.known.find(key);
+        if (at != shard.known.end()) return at->second;
+    }
+    auto division = std::make_shared<BeamDivision>();
+    make(*division);
+    const std::lock_guard hold(shard.lock);
+    if (shard.known.size() >= kMostInShard) shard.known.clear();
+    return shard.known.try_emplace(key, std::move(division)).first->second;
+}
+
+/// A part of a beam between three ends.
+struct RefinedBeams::Part {
+    Ends end;
+    const Lazy<BeamDivision>& kept;
+    std::uint32_t place;  // of place_of_part
+};
+
 RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams)
     : space_(space),
       source_(source),
       beams_(&beams),
       division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())),
-      kept_(std::make_unique<std::atomic<std::size_t>>(0)) {
+      kept_(std::make_unique<std::atomic<std::size_t>>(0)),
+      recent_(std::make_unique<RecentDivisions>()) {
     find_sides();
     const Vec3 all = beams.flux_arriving();
     faint_ = kFaintPiece * (all.x + all.y + all.z) / (space.size * space.size);
@@ -113,15 +136,15 @@ const BeamDivision& RefinedBeams::division(Id beam, const BeamEnds& end, const L
     });
 }
 
-/// The same, in `own` where enough is kept.
-const BeamDivision& RefinedBeams::division_for_now(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of,
-                                                   std::optional<BeamDivision>& own) const {
-    if (const BeamDivision* kept = of.find()) return *kept;
+/// The same; `own` holds it where enough is kept.
+const BeamDivision& RefinedBeams::division_for_now(Id beam, const Part& part,
+                                                   std::shared_ptr<const BeamDivision>& own) const {
+    if (const BeamDivision* kept = part.kept.find()) return *kept;
     if (kept_->load(std::memory_order_relaxed) < kMostKept) {
         kept_->fetch_add(1, std::memory_order_relaxed);
-        return division(beam, end, of);
+        return division(beam, part.end, part.kept);
     }
-    divide(beam, end, own.emplace());
+    own = recent_->get(beam, part.place, [&](BeamDivision& into) { divide(beam, part.end, into); });
     return *own;
 }
 
@@ -185,7 +208,8 @@ struct RefinedBeams::Visit {
         });
     }
 
-    void visit(const Ends& end, const Lazy<BeamDivision>& division, int level, double guess) const {
+    void visit(const Part& part, int level, double guess) const {
+        const Ends& end = part.end;
         std::array<Vec2, 6> at;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, *end[k]);
@@ -193,9 +217,9 @@ struct RefinedBeams::Visit {
             at[k] = *on;
         }
         if (is_beyond(std::span(at).first(3), guess)) return;
-        std::optional<BeamDivision> own;
+        std::shared_ptr<const BeamDivision> own;
         const BeamDivision& by =
-            level == 0 ? refined.division(beam) : refined.division_for_now(beam, end, division, own);
+            level == 0 ? refined.division(beam) : refined.division_for_now(beam, part, own);
         double bulge = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, by.middle[k]);
@@ -212,7 +236,7 @@ struct RefinedBeams::Visit {
             if (is_last)
                 use_whole(parts[i], on_plane[i]);
             else
-                visit(parts[i], by.part[i], level + 1, 0.5 * bulge);
+                visit({parts[i], by.part[i], place_of_part(part.place, i)}, level + 1, 0.5 * bulge);
         }
     }
 };
@@ -234,7 +258,7 @@ void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double gu
                       plane.has_footprint ? 0.5 : 0};
     if (!whole) return visit.use_part(end);
     const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
-    visit.visit(end, division_[beam], 0, std::max(guess, 0.5 * side));
+    visit.visit({end, division_[beam], kWholeBeam}, 0, std::max(guess, 0.5 * side));
 }
 
 void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const {

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
+#include <mutex>
+#include <unordered_map>
 #include <vector>
 
 #include "base/util/parallel.h"
@@ -21,12 +23,33 @@ struct BeamDivision {
     std::array<Lazy<BeamDivision>, 4> part;
 };
 
+/// The divisions that were asked for last, some 2^17 of them; what is not there was forgotten. Thread-safe.
+class RecentDivisions {
+  public:
+    /// `place`: which part of the beam, kWholeBeam or of place_of_part. `make(BeamDivision&)` fills it in.
+    template <typename Make>
+    std::shared_ptr<const BeamDivision> get(Id beam, std::uint32_t place, const Make& make);
+
+  private:
+    static constexpr std::size_t kShards = 64, kMostInShard = 2048;
+    struct Shard {
+        std::mutex lock;
+        std::unordered_map<std::uint64_t, std::shared_ptr<const BeamDivision>> known;
+    };
+    std::array<Shard, kShards> shard_;
+};
+
+inline constexpr std::uint32_t kWholeBeam = 1;
+constexpr std::uint32_t place_of_part(std::uint32_t whole, std::size_t part) {
+    return 4 * whole + static_cast<std::uint32_t>(part);
+}
+
 /// The corner triangles of a division, and the one between the middles.
 std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle);
 
 /// Beams as exact rays have them: each is divided where, and as far as, a footprint asks, and what was traced
-/// is kept, of footprints up to kMostKept divisions. What is found does not depend on who asked before.
-/// Thread-safe.
+/// is kept, of footprints up to kMostKept divisions, and the most recent of what they ask beyond. What is
+/// found does not depend on who asked before. Thread-safe.
 class RefinedBeams {
   public:
     RefinedBeams() = default;
@@ -56,8 +79,9 @@ class RefinedBeams {
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
     void find_sides();
     void divide(Id beam, const BeamEnds& end, BeamDivision& into) const;
-    const BeamDivision& division_for_now(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of,
-                                         std::optional<BeamDivision>& own) const;
+    struct Part;
+    const BeamDivision& division_for_now(Id beam, const Part& part,
+                                         std::shared_ptr<const BeamDivision>& own) const;
 
     LightSpace space_;
     BeamSource source_;
@@ -67,6 +91,7 @@ class RefinedBeams {
     std::vector<BeamEnd> side_middle_;                // neighbours share them
     std::unique_ptr<Lazy<BeamDivision>[]> division_;  // by beam
     std::unique_ptr<std::atomic<std::size_t>> kept_;  // divisions that footprints asked for
+    std::unique_ptr<RecentDivisions> recent_;         // and those beyond kMostKept
 };
 
 }  // namespace trilens
