@@ -248,7 +248,9 @@ void bind_image(py::module_& module) {
         "position: directID.object, directID.primitive, directP.X, directP.Y, directP.Z, directP.length "
         "(what the\n"
         "camera sees itself).\n"
-        "bound: by how many pixels what a mirror shows is displaced at most, as is proven (render's certify).");
+        "bound: by how many pixels what a mirror shows is displaced at most, as is proven (render's certify).\n"
+        "coverage: coverage.object (the mesh that the camera sees first at the pixel's centre), coverage.min, "
+        "coverage.max\n(shares of the pixel between which the part that shows it lies, as is proven).");
 }
 
 }  // namespace trilens::python

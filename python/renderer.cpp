@@ -217,7 +217,7 @@ void bind_pictures(RendererClass& renderer) {
         "approximations).\n"
         "layers: to keep beside R G B A, of layer_names(); None: all but \"path\", \"stat\", "
         "\"magnification\",\n"
-        "\"position\", \"ray\" and \"bound\".\n"
+        "\"position\", \"ray\", \"bound\" and \"coverage\".\n"
         "window: (x0, y0, x1, y1) of the film in pixels, x1 and y1 outside; None: all of it.\n"
         "curves, clip, pieces, tolerance: of the classic engine: \"arcs\", \"slices\", \"tessellate\" or\n"
         "\"straight\"; \"scene\", \"screen\" or \"none\"; pieces 1..1024; arcs keep within tolerance "

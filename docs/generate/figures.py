@@ -306,8 +306,34 @@ def displacement():
     return d.svg()
 
 
+def coverage():
+    """A pixel that an arc of a conic divides, and its cells: surely behind the arc, surely before it, and open."""
+    d = Drawing(760, 280)
+    side, left, top = 240, 25, 20
+
+    def inside(x, y):
+        return 0.75 * x * x + x + 0.55 * y - 0.95
+
+    def divide(x, y, size, level):
+        values = [inside(x + size * i / 8, y + size * j / 8) for i in range(9) for j in range(9)]
+        fill = "#dfe7ee" if max(values) < 0 else "#ffffff" if min(values) > 0 else ""
+        if fill or level == 5:
+            at = [(left + side * (x + size * i), top + side * (y + size * j)) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
+            d.path(at, GREY, 0.6, fill or "#f6dfae", closed=True)
+            return [size * size if max(values) < 0 else 0, 0 if min(values) > 0 else size * size]
+        parts = [divide(x + size / 2 * i, y + size / 2 * j, size / 2, level + 1) for i in (0, 1) for j in (0, 1)]
+        return [sum(part[k] for part in parts) for k in (0, 1)]
+
+    least, most = divide(0, 0, 1, 0)
+    arc = [(x, (0.95 - x - 0.75 * x * x) / 0.55) for x in [i / 400 for i in range(401)]]
+    d.path([(left + side * x, top + side * y) for x, y in arc if 0 <= y <= 1], RED, 2)
+    d.lines((310, 60), "blue: cells that surely show the mesh\nyellow: cells that may\nred: where its edge lies\n\n"
+            f"coverage.min {least:.3f} (blue)\ncoverage.max {most:.3f} (blue and yellow)", 14)
+    return d.svg()
+
+
 FIGURES = {"how-it-works": how_it_works, "ray-mesh": ray_mesh, "facet": facet, "histories": histories, "nested": nested,
-           "displacement": displacement}
+           "displacement": displacement, "coverage": coverage}
 
 
 def write(folder):

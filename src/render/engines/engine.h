@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/raymesh/sample_grid.h"
+#include "render/engines/coverage_bounds.h"
 #include "render/frame/frame.h"
 #include "render/frame/request.h"
 #include "render/frame/views.h"
@@ -30,6 +31,11 @@ class Viewer {
     virtual const RayMesh* camera_mesh() const = 0;
     /// The exact rays of a camera that is not linear; null: those of camera_mesh() are.
     virtual const CameraModel* exact_camera() const = 0;
+
+    /// As CoverageBounder::bound(). Where the exact surfaces or the classic engine decide what is seen,
+    /// nothing is said.
+    virtual void bound_coverage(const SampleGrid& grid, std::span<const Id> shown,
+                                std::span<CoverageBounds> bounds) = 0;
 
     /// Whether it can tell which samples make fragments: engines that project, without outlines.
     virtual bool has_keys() const = 0;

@@ -49,6 +49,8 @@ class FacetViewer : public Viewer {
     const OpticPaths& paths(std::size_t optic) const override { return paths_[optic].paths(); }
     const RayMesh* camera_mesh() const override { return &frame_.camera.mesh; }
     const CameraModel* exact_camera() const override { return frame_.camera.model.get(); }
+    void bound_coverage(const SampleGrid& grid, std::span<const Id> shown,
+                        std::span<CoverageBounds> bounds) override;
     bool has_keys() const override { return has_keys_; }
     void find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) override;
     void find_keys_of_pixels(const SampleGrid& grid, std::span<FragmentKey> keys) override;
@@ -84,6 +86,7 @@ class FacetViewer : public Viewer {
     bool redraws_direct_ = false;        // draw_objects_ is another engine than draw_first_
     bool has_keys_ = false;
     OpticRims rims_;
+    std::optional<CoverageBounder> coverage_;  // once it is asked for
     std::optional<NestedStage> stage_;
 
     // What views work out, and later ones find.
@@ -329,6 +332,14 @@ FacetViewer::FacetViewer(const World& world, Frame frame, const EngineChoice& en
       has_keys_(projects(engine.engine) && engine.engine != Engine::kClassic) {
     make_paths(engine);
     choose_drawers(engine, watch);
+}
+
+void FacetViewer::bound_coverage(const SampleGrid& grid, std::span<const Id> shown,
+                                 std::span<CoverageBounds> bounds) {
+    std::fill(bounds.begin(), bounds.end(), CoverageBounds());
+    if (redraws_direct_ || (rims_.limit != kAnyError && !frame_.optics.empty())) return;
+    if (!coverage_) coverage_.emplace(world_, frame_, windows_);
+    coverage_->bound(grid, shown, bounds);
 }
 
 void FacetViewer::find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) {

@@ -78,6 +78,9 @@ class LimitViewer : public Viewer {
     void find_keys(const SampleGrid&, std::span<FragmentKey>) override { has_none(); }
     void find_keys_of_pixels(const SampleGrid&, std::span<FragmentKey>) override { has_none(); }
     FragmentKey key_of(const SampleViews&, const SampleView&) const override { has_none(); }
+    void bound_coverage(const SampleGrid&, std::span<const Id>, std::span<CoverageBounds> bounds) override {
+        std::fill(bounds.begin(), bounds.end(), CoverageBounds());
+    }
 
   private:
     [[noreturn]] static void has_none() {

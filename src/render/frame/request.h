@@ -104,7 +104,7 @@ struct EnumNames<Shading> {
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
     // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification",
-    // "position", "ray" and "bound".
+    // "position", "ray", "bound" and "coverage".
     std::vector<std::string> layers;
     // Of a sample's light what is shown of it, 0..1: the film's filter averages that, R G B are then no
     // light. None: light. A highlight a thousand times as bright as the screen's white else outweighs all
@@ -179,9 +179,10 @@ struct Picture {
 /// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
 /// "stat", "magnification" (which goes with a path's own layer), "position" (directID and directP: what the
 /// camera sees itself, where no optic is first), "ray" (reflectD and reflectO, refractD and refractO: the
-/// last ray's unit direction and its origin, world frame; with a path's own layer) and "bound" (pixels: by
+/// last ray's unit direction and its origin, world frame; with a path's own layer), "bound" (pixels: by
 /// how much what a mirror shows is displaced at most, where that is proven; 0 where it is traced, or not
-/// asked).
+/// asked) and "coverage" (the mesh that the pixel's centre shows first, and between which shares of the pixel
+/// the camera sees it, as is proven for every place in it; 0 and 1 say nothing).
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

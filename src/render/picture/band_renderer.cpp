@@ -128,6 +128,8 @@ struct Band {
     std::unique_ptr<FilteredSamples> filtered;
     std::unique_ptr<FragmentColours> fragments;
     LayerStatistics counts;
+    std::vector<Id> shown;  // by the pixels' centres; empty: coverage is not asked for
+    std::vector<CoverageBounds> coverage;
 
     /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
     const SampleViews& middle() const {
@@ -149,10 +151,11 @@ struct BandSource {
     Viewer& viewer;
     const PixelFilter& filter;
     bool by_fragments = false;  // see makes_fragments()
+    bool bounds_coverage = false;
 };
 
 void view_band(const BandSource& source, Band& band) {
-    const auto& [world, viewer, filter, by_fragments] = source;
+    const auto& [world, viewer, filter, by_fragments, bounds_coverage] = source;
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
     band.fragments.reset();
@@ -164,12 +167,17 @@ void view_band(const BandSource& source, Band& band) {
     band.filter_reaches = filter.reach > 0;
     if (grid.side > 1 && (!band.fragments || band.filter_reaches))
         viewer.view({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
+    if (!bounds_coverage) return;
+    band.shown.clear();
+    for (const SampleView& view : band.middle().samples) band.shown.push_back(shown_mesh(world, view));
+    band.coverage.resize(band.shown.size());
+    viewer.bound_coverage({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.shown, band.coverage);
 }
 
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
 void find_colours(const BandSource& source, const Band& band, std::size_t first,
                   std::span<SampleColour> colours) {
-    const auto& [world, viewer, filter, by_fragments] = source;
+    const auto& [world, viewer, filter, by_fragments, bounds_coverage] = source;
     const SampleGrid& grid = band.grid;
     if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
@@ -250,6 +258,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
         counts.rays_by_sample = band.fragments->counts().by_sample;
         counts.pixels_shaded_by_sample = band.fragments->counts().pixels_by_sample;
     }
+    if (source.bounds_coverage) canvas.put_coverage(band.shown, band.coverage, first);
     std::mutex mutex;
     parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
         LayerStatistics own;
@@ -297,7 +306,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
-    const BandSource source{world, viewer, filter, by_fragments};
+    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage()};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {

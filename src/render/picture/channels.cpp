@@ -58,6 +58,7 @@ const std::vector<std::string>& layer_names() {
         all.push_back("position");
         all.push_back("ray");
         all.push_back("bound");
+        all.push_back("coverage");
         return all;
     }();
     return names;
@@ -77,7 +78,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
     const auto wanted = [&](const std::string& layer) {
         if (layers.empty())
             return layer != "path" && layer != "stat" && layer != "magnification" && layer != "position" &&
-                   layer != "ray" && layer != "bound";
+                   layer != "ray" && layer != "bound" && layer != "coverage";
         return std::find(layers.begin(), layers.end(), layer) != layers.end();
     };
     for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
@@ -114,6 +115,11 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
     }
     if (wanted("path")) path_count_ = add_ids("path.count");
     if (wanted("bound")) bound_ = add_floats("bound");
+    if (wanted("coverage")) {
+        covered_object_ = add_ids("coverage.object");
+        covered_least_ = add_floats("coverage.min");
+        covered_most_ = add_floats("coverage.max");
+    }
     if (wanted("stat")) {
         method_ = add_ids("stat.method");
         level_ = add_ids("stat.level");
@@ -159,6 +165,15 @@ void Canvas::put_colours(std::span<const SampleColour> means, std::size_t first)
     }
     float* coverage = floats(rgba_[3]).data() + first;
     for (const SampleColour& mean : means) *coverage++ = static_cast<float>(mean.coverage);
+}
+
+void Canvas::put_coverage(std::span<const Id> shown, std::span<const CoverageBounds> bounds,
+                          std::size_t first) {
+    std::copy(shown.begin(), shown.end(), ids(covered_object_).begin() + static_cast<std::ptrdiff_t>(first));
+    for (std::size_t p = 0; p < bounds.size(); ++p) {
+        floats(covered_least_)[first + p] = bounds[p].low;
+        floats(covered_most_)[first + p] = bounds[p].high;
+    }
 }
 
 void Canvas::put_fragment_count(std::size_t count, std::size_t pixel) {

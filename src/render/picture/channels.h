@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/image/image.h"
+#include "render/engines/coverage_bounds.h"
 #include "render/frame/request.h"
 #include "render/frame/views.h"
 #include "render/picture/sample_colour.h"
@@ -24,6 +25,11 @@ class Canvas {
     void put_colours(std::span<const SampleColour> means, std::size_t first);
     /// What the pixel's centre shows.
     void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
+
+    /// Whether it has the layer "coverage".
+    bool wants_coverage() const { return covered_object_ != kNone; }
+    /// What pixels from `first` on show at their centres, and bounds of its share of each.
+    void put_coverage(std::span<const Id> shown, std::span<const CoverageBounds> bounds, std::size_t first);
 
     /// How often its samples were shaded: the pixel's fragments, or its samples.
     void put_fragment_count(std::size_t count, std::size_t pixel);
@@ -54,6 +60,7 @@ class Canvas {
     std::size_t depth_ = kNone;
     std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
     std::size_t bound_ = kNone;  // a proven displacement, pixels
+    std::size_t covered_object_ = kNone, covered_least_ = kNone, covered_most_ = kNone;
     std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone, fragments_ = kNone;
     std::vector<EndChannels> ends_;
 };
