@@ -16,7 +16,9 @@ target_compile_options(trilens_options INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${TRILENS_SANITIZE}>>:-Wno-maybe-uninitialized>
   $<$<BOOL:${TRILENS_FUZZ}>:-fsanitize=fuzzer-no-link>
   $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,$<BOOL:${TRILENS_FUZZ}>>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
-target_link_options(trilens_options INTERFACE
+target_compile_options(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREADS}>:-fsanitize=thread>)
+target_compile_definitions(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREADS}>:TRILENS_PLAIN_THREADS>)
+target_link_options(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREADS}>:-fsanitize=thread>
   $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,$<BOOL:${TRILENS_FUZZ}>>:-fsanitize=address,undefined>)
 
 # A room's units are compiled several together, which reads their headers once. What each calls its own (in an unnamed
@@ -73,7 +75,7 @@ function(trilens_room name folder)
     # Instruction sets that bring this code nothing: SSSE3, and those of AVX-512 beyond its first (the last two are
     # later versions' names for bits). Sanitized, where it is compiled for minutes: AVX-512 altogether.
     set(without "HWY_SSSE3|HWY_AVX3_DL|(1LL<<6)|(1LL<<4)")
-    if(TRILENS_SANITIZE)
+    if(TRILENS_SANITIZE OR TRILENS_SANITIZE_THREADS)
       string(APPEND without "|HWY_AVX3")
     endif()
     target_compile_definitions(trilens_${name} PRIVATE "HWY_DISABLED_TARGETS=(${without})")

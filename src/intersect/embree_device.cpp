@@ -43,7 +43,12 @@ void check_isa(const std::string& isa) {
 // Files of the user's that Embree would read are ignored: they could change results behind our back.
 std::string embree_configuration(const std::string& isa) {
     std::string text = "ignore_config_files=1";
+#ifdef TRILENS_PLAIN_THREADS
+    // Trees are built where they are asked for: the thread sanitizer does not see what orders TBB's threads.
+    text += ",threads=1";
+#else
     if (const int threads = g_threads.load(); threads > 0) text += ",threads=" + std::to_string(threads);
+#endif
     if (!isa.empty()) text += ",isa=" + isa;
     return text;
 }

@@ -1,11 +1,13 @@
 #include "base/util/parallel.h"
 
-#ifndef __EMSCRIPTEN__  // there parallel_serial.cpp takes its place
+#ifndef __EMSCRIPTEN__         // there parallel_serial.cpp takes its place
+#ifndef TRILENS_PLAIN_THREADS  // there parallel_threads.cpp, but for run_on_threads
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+#endif
 
 #include <memory>
 #include <mutex>
@@ -15,6 +17,9 @@
 #include <vector>
 
 namespace trilens {
+
+#ifndef TRILENS_PLAIN_THREADS
+
 namespace {
 
 struct ThreadLimit {
@@ -80,6 +85,8 @@ void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& st
 void run_isolated(const std::function<void()>& work) {
     tbb::this_task_arena::isolate(work);
 }
+
+#endif
 
 void run_on_threads(std::size_t count, const std::function<void()>& work) {
     std::vector<std::jthread> others;

@@ -61,17 +61,19 @@ class Lazy {
     /// `make` returns a std::unique_ptr<T>.
     template <typename Make>
     const T& get(Make&& make) const {
-        std::call_once(made_, [&] {
+        if (const T* ready = find()) return *ready;
+        const std::lock_guard<std::mutex> lock(making_);
+        if (!value_) {
             run_isolated([&] { value_ = std::forward<Make>(make)(); });
             ready_.store(value_.get(), std::memory_order_release);
-        });
+        }
         return *value_;
     }
     /// What was made; null where nothing is yet.
     const T* find() const { return ready_.load(std::memory_order_acquire); }
 
   private:
-    mutable std::once_flag made_;
+    mutable std::mutex making_;
     mutable std::unique_ptr<T> value_;
     mutable std::atomic<const T*> ready_ = nullptr;
 };
