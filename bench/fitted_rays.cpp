@@ -111,7 +111,8 @@ Study make_study(const std::string& file, const std::vector<std::string>& settin
     Study study;
     study.scene = file;
     for (const std::string& one : settings) study.scene += " " + one;
-    study.world = make_world(load_scene(file, overrides, {read_texture, decode_texture}), ignore);
+    study.world =
+        make_world(load_scene(file, overrides, {read_texture, decode_texture, read_heights}), ignore);
     study.draw({}, Engine::kLimitTruth);
     const double start = cpu_seconds();
     study.truth = study.draw({}, Engine::kLimitTruth).image;

@@ -77,12 +77,24 @@ void bind_parts(py::module_& module) {
         "filter", [](const Film& one) { return name_of(one.filter); },
         "How samples make a pixel's colour: \"box\", \"mitchell\" or \"gaussian\".");
 
+    py::class_<TerrainInfo> terrain(module, "Terrain", "How an object was made of heights.");
+    bind_fields(
+        terrain, field("columns", &TerrainInfo::columns, "Samples across."),
+        field("rows", &TerrainInfo::rows, "Samples down."),
+        field("missing_heights", &TerrainInfo::missing_heights,
+              "Samples without a height: the cells around them are holes."),
+        field("whole_triangles", &TerrainInfo::whole_triangles, "That the whole grid has, without holes."),
+        field("greatest_error", &TerrainInfo::greatest_error,
+              "How far its triangles are from those at most, along its y, before its transform."),
+        field("rms_error", &TerrainInfo::rms_error, "The same in the mean of squares."));
+
     py::class_<MeshInfo> mesh(module, "Mesh",
                               "A mesh of the scene; its index in Scene.meshes is its object id.");
     bind_fields(
         mesh, field("name", &MeshInfo::name, "Its name."),
         field("shape", &MeshInfo::shape,
-              "\"polygons\", \"catmullClark\", \"loop\", \"bilinear\", \"sphere\", \"paraboloid\",\n"
+              "\"polygons\", \"terrain\", \"catmullClark\", \"loop\", \"bilinear\", \"sphere\", "
+              "\"paraboloid\",\n"
               "\"cylinder\", \"cone\" or \"plane\"."),
         field("material", &MeshInfo::material, "Its name; \"inherit\" where triangles carry their own."),
         field("points", &MeshInfo::points, "How many; 0 for a primitive."),
@@ -92,6 +104,9 @@ void bind_parts(py::module_& module) {
     mesh.def_property_readonly(
             "role", [](const MeshInfo& info) { return info.role == Role::kOptic ? "optic" : "object"; },
             "\"optic\" (mirrors or refracts) or \"object\".")
+        .def_property_readonly(
+            "terrain", [](const MeshInfo& info) { return info.terrain; },
+            "How it was made of heights; None where it was not.")
         .def_property_readonly(
             "bounds", [](const MeshInfo& info) { return bounds_of(info.bounds); },
             "((x, y, z), (x, y, z)): the lowest and the highest corner of its box, world frame; None where "

@@ -1,11 +1,11 @@
 #include "image/image_io.h"
 
+#include <dlfcn.h>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <dlfcn.h>
 #include <filesystem>
 #include <limits>
 #include <mutex>
@@ -251,6 +251,11 @@ std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> enc
     ExrFile in(encoded, name);
     if (!in.is_deep(0) && !in.is_sampled_everywhere(0)) return library_to_read(name).decode(encoded, name);
     return exr_texture(in, name);
+}
+
+HeightGrid read_heights(const std::string& file) {
+    if (!is_exr_file(file)) require_sound_png(png_fault(file), file);
+    return library_to_read(file).read_heights(file);
 }
 
 std::vector<unsigned char> encode_png(int width, int height, std::span<const float> rgb) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/description/material.h"
+#include "base/image/height_grid.h"
 #include "base/image/image.h"
 
 namespace trilens {
@@ -19,6 +20,7 @@ struct PictureLibrary {
     std::shared_ptr<const Texture> (*read)(const std::string& file) = nullptr;
     std::shared_ptr<const Texture> (*decode)(std::span<const unsigned char> encoded,
                                              const std::string& name) = nullptr;
+    HeightGrid (*read_heights)(const std::string& file) = nullptr;
     void (*set_threads)(int threads) = nullptr;
 };
 
@@ -67,6 +69,10 @@ std::shared_ptr<const Texture> read_texture(const std::string& file);
 /// The same for a PNG, JPEG, OpenEXR or Radiance file held in memory. `name`: for messages.
 std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded,
                                               const std::string& name);
+
+/// Reads the numbers of the first channel of any picture that OpenImageIO knows, all of its data window: see
+/// HeightGrid. Throws InputError, also where a side has more than kMostHeightsSide samples.
+HeightGrid read_heights(const std::string& file);
 
 /// An 8-bit sRGB PNG of linear RGB triples, rows from the top; values are clamped to 0..1 before encoding,
 /// NaN becomes 0. Beside its name, then renamed. Throws OutputError.

@@ -11,6 +11,7 @@
 #include <new>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "base/files/files.h"
 #include "base/util/error.h"
@@ -89,14 +90,21 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
     return texture;
 }
 
-/// Reads the first picture of an open file.
-std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string& name,
-                                         std::size_t encoded_size) {
-    const OIIO::ImageSpec spec = in.spec();
+/// What the header of an open file says of its first picture.
+OIIO::ImageSpec checked_header(const OIIO::ImageInput& in, const std::string& name,
+                               std::size_t encoded_size) {
+    OIIO::ImageSpec spec = in.spec();
     if (spec.deep || spec.depth > 1) throw InputError(name, "", "is no flat picture");
     if (static_cast<double>(spec.image_bytes(true)) >
         kSmallHeader + kLargestCompression * static_cast<double>(encoded_size))
         throw InputError(name, "", "is damaged: its header claims more pixels than the file can hold");
+    return spec;
+}
+
+/// Reads the first picture of an open file.
+std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string& name,
+                                         std::size_t encoded_size) {
+    const OIIO::ImageSpec spec = checked_header(in, name, encoded_size);
     try {
         std::vector<float> values(static_cast<std::size_t>(spec.image_pixels()) *
                                   static_cast<std::size_t>(spec.nchannels));
@@ -130,12 +138,58 @@ std::string name_for_format(std::span<const unsigned char> encoded) {
     return "";
 }
 
+std::unique_ptr<OIIO::ImageInput> open_file(const std::string& file) {
+    const OIIO::ImageSpec hints = reading_hints();
+    auto in = OIIO::ImageInput::open(file, &hints);
+    if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
+    return in;
+}
+
 std::shared_ptr<const Texture> read(const std::string& file) {
     const std::size_t size = readable_size(file);
-    const OIIO::ImageSpec hints = reading_hints();
-    const auto in = OIIO::ImageInput::open(file, &hints);
-    if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
-    return read_open(*in, file, size);
+    return read_open(*open_file(file), file, size);
+}
+
+/// The first channel, converted by the library to `Stored`, of which `type` is its name.
+template <typename Stored>
+std::vector<float> first_channel(OIIO::ImageInput& in, OIIO::TypeDesc type, const std::string& name) {
+    std::vector<Stored> stored(static_cast<std::size_t>(in.spec().image_pixels()));
+    if (!in.read_image(0, 0, 0, 1, type, stored.data()) || in.has_error())
+        throw InputError(name, "", "is truncated or damaged: " + library_reason(in.geterror()));
+    if constexpr (std::is_same_v<Stored, float>)
+        return stored;
+    else
+        return std::vector<float>(stored.begin(), stored.end());
+}
+
+HeightGrid heights_of(const std::string& file) {
+    const std::size_t size = readable_size(file);
+    const auto in = open_file(file);
+    const OIIO::ImageSpec spec = checked_header(*in, file, size);
+    HeightGrid heights{spec.width, spec.height, spec.nchannels, {}};
+    if (std::max(heights.columns, heights.rows) > kMostHeightsSide)
+        throw InputError(file, "",
+                         "has " + std::to_string(heights.columns) + " x " + std::to_string(heights.rows) +
+                             " samples, more than " + std::to_string(kMostHeightsSide) + " along a side");
+    try {
+        // Integers that the library would take for shares of the greatest are numbers here.
+        switch (spec.format.basetype) {
+            case OIIO::TypeDesc::INT16:
+                heights.values = first_channel<std::int16_t>(*in, spec.format, file);
+                break;
+            case OIIO::TypeDesc::INT32:
+                heights.values = first_channel<std::int32_t>(*in, spec.format, file);
+                break;
+            case OIIO::TypeDesc::UINT32:
+                heights.values = first_channel<std::uint32_t>(*in, spec.format, file);
+                break;
+            default:
+                heights.values = first_channel<float>(*in, OIIO::TypeFloat, file);
+        }
+    } catch (const std::bad_alloc&) {
+        throw InputError(file, "", "needs more memory than there is");
+    }
+    return heights;
 }
 
 std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, const std::string& name) {
@@ -161,6 +215,6 @@ void set_threads(int threads) {
 
 const trilens::PictureLibrary* trilens_picture_library() {
     static const trilens::PictureLibrary library{trilens::kVersion, trilens::read, trilens::decode,
-                                                 trilens::set_threads};
+                                                 trilens::heights_of, trilens::set_threads};
     return &library;
 }

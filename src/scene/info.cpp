@@ -51,7 +51,7 @@ Box primitive_box(const Primitive& primitive) {
 }
 
 std::string shape_name(const Mesh& mesh) {
-    if (mesh.role == Role::kObject) return "polygons";
+    if (mesh.role == Role::kObject) return mesh.terrain ? "terrain" : "polygons";
     return mesh.primitive ? kind_name(*mesh.primitive) : name_of(mesh.cage.scheme);
 }
 
@@ -73,6 +73,11 @@ MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
     info.resolution = is_object ? 0 : mesh.resolution;
     if (mesh.primitive) info.bounds = primitive_box(*mesh.primitive);
     for (const Vec3& point : points) info.bounds.include(point);
+    if (mesh.terrain) {
+        const Terrain& terrain = *mesh.terrain;
+        info.terrain = TerrainInfo{terrain.heights->columns, terrain.heights->rows,  terrain.missing_heights,
+                                   terrain.whole_triangles,  terrain.greatest_error, terrain.rms_error};
+    }
     return info;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,19 @@
 
 namespace trilens {
 
+/// Of an object that was made of heights.
+struct TerrainInfo {
+    int columns = 0, rows = 0;                 // samples
+    std::size_t missing_heights = 0;           // samples around which there are holes
+    std::size_t whole_triangles = 0;           // that the whole grid has, without holes
+    double greatest_error = 0, rms_error = 0;  // of its triangles along its y, in its own frame
+};
+
 struct MeshInfo {
     std::string name;
     Role role = Role::kObject;
-    std::string shape;  // "polygons", "catmullClark", "loop", "bilinear", "sphere", "paraboloid", "cylinder",
-                        // "cone", "plane"
+    std::string shape;  // "polygons", "terrain", "catmullClark", "loop", "bilinear", "sphere", "paraboloid",
+                        // "cylinder", "cone", "plane"
     std::string material;       // its name; "inherit" where the triangles carry their own
     std::size_t points = 0;     // 0 for a primitive
     std::size_t faces = 0;      // 0 for a primitive
@@ -23,6 +32,7 @@ struct MeshInfo {
     int resolution = 0;                               // of an optic
     Box bounds;  // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a
                  // little larger
+    std::optional<TerrainInfo> terrain;
 };
 
 struct MaterialInfo {

@@ -160,7 +160,7 @@ void move_files(Json& part, const std::filesystem::path& from, const std::filesy
         for (Json& entry : part) move_files(entry, from, to);
     if (!part.is_object()) return;
     for (auto& [key, value] : part.items()) {
-        const bool names = (key == "file" || key.ends_with("Texture")) && value.is_string();
+        const bool names = (key == "file" || key == "heights" || key.ends_with("Texture")) && value.is_string();
         if (names) {
             const std::filesystem::path path = value.get<std::string>();
             if (path.is_relative())

@@ -123,9 +123,14 @@ Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers) {
         changes.push_back({number.pointer, text_of(number.value)});
     }
     const auto blank = std::make_shared<const Texture>();
-    const TextureReader no_textures{
-        [&](const std::string&) { return blank; },
-        [&](std::span<const unsigned char>, const std::string&) { return blank; }};
+    const TextureReader no_textures{[&](const std::string&) { return blank; },
+                                    [&](std::span<const unsigned char>, const std::string&) { return blank; },
+                                    [&](const std::string& file) {
+                                        for (const Mesh& mesh : scene.meshes)
+                                            if (mesh.terrain && mesh.terrain->file == file)
+                                                return *mesh.terrain->heights;
+                                        throw InputError(file, "", "is no terrain of the scene before");
+                                    }};
     return load_scene_text(scene.resolved, SceneSource(scene_title(scene), scene.folder), changes,
                            no_textures);
 }

@@ -16,7 +16,8 @@ TextureReader texture_reader() {
     return {[](const std::string& file) { return read_texture(file); },
             [](std::span<const unsigned char> encoded, const std::string& name) {
                 return decode_texture(encoded, name);
-            }};
+            },
+            read_heights};
 }
 
 bool is_image(const std::string& file) {

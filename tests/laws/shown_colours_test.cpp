@@ -89,12 +89,14 @@ std::size_t count_unlike(const Shown& picture, const Shown& truth) {
 
 /// A scene of the folder scenes, or an example's text, at its own settings.
 std::unique_ptr<World> own_world(const std::string& name) {
-    return make_world(
-        load_scene(source_dir() + "/scenes/" + name + ".json", {}, {read_texture, decode_texture}), ignore);
+    return make_world(load_scene(source_dir() + "/scenes/" + name + ".json", {},
+                                 {read_texture, decode_texture, read_heights}),
+                      ignore);
 }
 std::unique_ptr<World> world_of_text(const std::string& json) {
-    return make_world(load_scene_text(json, SceneSource("scene", ""), {}, {read_texture, decode_texture}),
-                      ignore);
+    return make_world(
+        load_scene_text(json, SceneSource("scene", ""), {}, {read_texture, decode_texture, read_heights}),
+        ignore);
 }
 
 struct Case {

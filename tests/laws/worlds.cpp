@@ -101,8 +101,9 @@ std::unique_ptr<World> shipped_world(const std::string& name, int n, int width, 
     const std::vector<SceneOverride> film{
         {"/film/width", std::to_string(width)}, {"/film/height", std::to_string(height)}, {"/film/spp", "1"}};
     try {
-        return finish(
-            load_scene(source_dir() + "/scenes/" + name + ".json", film, {read_texture, decode_texture}), n);
+        return finish(load_scene(source_dir() + "/scenes/" + name + ".json", film,
+                                 {read_texture, decode_texture, read_heights}),
+                      n);
     } catch (const InputError& error) {
         // Only a model that Debian packages and this machine lacks may be missing.
         if (!missing || fs::exists("/usr/share/assimp/models") ||
@@ -130,14 +131,15 @@ std::unique_ptr<World> data_world(const std::string& name) {
     const std::regex cage("\"[^\"]*/(cages/[^\"]*)\""), texture("\"[^\"]*/(textures/[^\"]*)\"");
     const std::string cages = std::regex_replace(text.str(), cage, "\"" + data_dir() + "/$1\"");
     const std::string json = std::regex_replace(cages, texture, "\"" + source_dir() + "/scenes/$1\"");
-    return make_world(load_scene_text(json, SceneSource(name, ""), {}, {read_texture, decode_texture}),
-                      ignore);
+    return make_world(
+        load_scene_text(json, SceneSource(name, ""), {}, {read_texture, decode_texture, read_heights}),
+        ignore);
 }
 
 std::unique_ptr<World> world_from(const std::string& name, const std::string& json, int n) {
     const std::string file = scratch_dir("worlds_" + name) + "/" + name + ".json";
     std::ofstream(file) << json;
-    return finish(load_scene(file, {}, {read_texture, decode_texture}), n);
+    return finish(load_scene(file, {}, {read_texture, decode_texture, read_heights}), n);
 }
 
 std::unique_ptr<World> cage_world(const std::string& cage, int n, int width, int height) {
@@ -152,7 +154,7 @@ std::unique_ptr<World> cage_world(const Cage& cage, int n, int width, int height
     const std::string model_file = source_dir() + "/scenes/models/balloon.obj";
     const std::string file = scratch_dir("worlds_made") + "/made.json";
     std::ofstream(file) << room_json("\"primitive\":{\"type\":\"sphere\"}", model_file, width, height);
-    Scene scene = load_scene(file, {}, {read_texture, decode_texture});
+    Scene scene = load_scene(file, {}, {read_texture, decode_texture, read_heights});
 
     Mesh& mesh = scene.meshes[0];
     mesh.primitive.reset();

@@ -1,6 +1,7 @@
 """The shell scripts: what proves something can fail, and packages are asked for by purpose."""
 import re
 import subprocess
+import zlib
 
 import pytest
 
@@ -56,3 +57,21 @@ def test_volumes_that_a_script_makes_are_as_it_makes_them(tmp_path):
     assert [file.name for file in made] == ["benzene.json", "benzene.nrrd", "jet.json", "jet.vtk"]
     for file in made:
         assert file.read_bytes() == (SOURCE / "scenes/volumes" / file.name).read_bytes(), file.name
+
+
+def test_the_terrain_that_a_script_makes_is_as_it_makes_it(tmp_path):
+    subprocess.run([SOURCE / "scripts/make-terrain-scene", tmp_path], check=True, capture_output=True)
+    assert (tmp_path / "terrain/mountains.json").read_text() == (SOURCE / "scenes/terrain/mountains.json").read_text()
+    for name in ("heights.png", "colours.png"):  # what zlib makes of them may differ
+        made, kept = ((folder / "terrain" / name).read_bytes() for folder in (tmp_path, SOURCE / "scenes"))
+        assert zlib.decompress(png_data(made)) == zlib.decompress(png_data(kept))
+
+
+def png_data(png):
+    at, data = 8, b""
+    while at < len(png):
+        length = int.from_bytes(png[at:at + 4], "big")
+        if png[at + 4:at + 8] == b"IDAT":
+            data += png[at + 8:at + 8 + length]
+        at += 12 + length
+    return data

@@ -141,7 +141,7 @@ TEST_CASE("wrong types and ranges and lengths", "[scene]") {
         {"/meshes/1/primitive/type", "torus",
          "/meshes/1/primitive/type: unknown value 'torus'; known: sphere, paraboloid, cylinder, cone, plane, "
          "box, disk"},
-        {"/meshes/2/role", "mirror", "/meshes/2/role: unknown value 'mirror'; known: object, optic"},
+        {"/meshes/2/role", "mirror", "/meshes/2/role: unknown value 'mirror'; known: object, optic, terrain"},
         {"/lights/1/position", "null", "/lights/1/position: expected an array, found null"},
         {"/lights/0/intensity", "-1", "/lights/0/intensity: -1 is out of range: must be at least 0"},
         {"/render/paths", "[\"direct\",\"direct\"]",
@@ -271,7 +271,7 @@ TEST_CASE("keys that need or exclude each other", "[scene]") {
          "/meshes/1/primitive/segments: are an object's: an optic is exact"},
         {"/meshes/1/fit", R"({"size":1})", "/meshes/1/fit: an optic's primitive has its own center and size"},
         {"/meshes/2", R"({"role":"object"})",
-         "/meshes/2: a mesh needs one of 'points', 'file' and 'primitive'"},
+         "/meshes/2: a mesh needs one of 'points', 'file', 'primitive' and 'heights'"},
         {"/meshes/1", R"({"role":"optic","primitive":{"type":"sphere"}})",
          "/meshes/1: an optic needs 'material'"},
         {"/background/rotate", "30", "/background: 'rotate' needs 'file' beside it"},

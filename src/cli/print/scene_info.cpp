@@ -30,6 +30,12 @@ Json mesh_json(const MeshInfo& mesh) {
         json["holes"] = mesh.holes;
     }
     json["bounds"] = box_json(mesh.bounds);
+    if (const std::optional<TerrainInfo>& terrain = mesh.terrain)
+        json["terrain"] = {{"samples", {terrain->columns, terrain->rows}},
+                           {"missing_heights", terrain->missing_heights},
+                           {"whole_triangles", terrain->whole_triangles},
+                           {"greatest_error", terrain->greatest_error},
+                           {"rms_error", terrain->rms_error}};
     return json;
 }
 
@@ -63,9 +69,15 @@ std::string camera_line(const std::string& name, const std::string& type, const 
 std::string mesh_line(const MeshInfo& mesh) {
     std::string line = mesh.role == Role::kOptic ? "  optic   " : "  object  ";
     line += mesh.name + ": " + mesh.shape;
-    if (mesh.faces > 0) line += ", " + std::to_string(mesh.faces) + " faces";
+    if (mesh.terrain)
+        line += fmt::format(", {} x {} samples", mesh.terrain->columns, mesh.terrain->rows);
+    else if (mesh.faces > 0)
+        line += ", " + std::to_string(mesh.faces) + " faces";
     line += mesh.role == Role::kOptic ? ", resolution " + std::to_string(mesh.resolution)
                                       : ", " + std::to_string(mesh.triangles) + " triangles";
+    if (mesh.terrain)
+        line += fmt::format(" of {}, off by at most {:.4g}", mesh.terrain->whole_triangles,
+                            mesh.terrain->greatest_error);
     line += ", material " + mesh.material;
     if (!mesh.bounds.empty()) {
         const Vec3 &a = mesh.bounds.low, &b = mesh.bounds.high;

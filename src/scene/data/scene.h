@@ -12,6 +12,7 @@
 #include "base/description/light.h"
 #include "base/description/material.h"
 #include "base/description/optic_description.h"
+#include "base/image/height_grid.h"
 #include "base/math/vec.h"
 #include "base/raymesh/triangle_scene.h"
 #include "volume/volume_data.h"
@@ -83,6 +84,16 @@ struct ObjectMesh {
     std::vector<Id> material;                     // per triangle: index into Scene::materials
 };
 
+/// What an object's triangles were made of, where heights are.
+struct Terrain {
+    std::string file;  // as it was opened
+    std::shared_ptr<const HeightGrid> heights;
+    std::size_t missing_heights = 0;  // samples around which there are holes
+    std::size_t whole_triangles = 0;  // that the whole grid has, without holes
+    // How far its triangles are, along its y and in its own frame, from those of the whole grid.
+    double greatest_error = 0, rms_error = 0;
+};
+
 /// One entry of the file's `meshes`. Its index is the object id in images.
 struct Mesh {
     std::string name;
@@ -102,6 +113,7 @@ struct Mesh {
     Cage cage;
     std::vector<Vec2> cage_uvs;  // where normals are mapped: per entry of cage.face_vertex_indices
     bool maps_normals = false;   // optic: its material's normal map turns its normals
+    std::shared_ptr<const Terrain> terrain;  // object: how it was made, where of heights
 };
 
 /// Whether the optic's normals are those that the derivatives of its surface have.

@@ -200,8 +200,8 @@ void add(const Cage& cage, Digest& digest) {
 }
 
 void add(const Mesh& mesh, Digest& digest) {
-    const auto& [name, role, material, resolution, grid, rays, layered, face_count, normals, priority, object,
-                 primitive, cage, cage_uvs, maps_normals] = mesh;
+    [[maybe_unused]] const auto& [name, role, material, resolution, grid, rays, layered, face_count, normals,
+                                  priority, object, primitive, cage, cage_uvs, maps_normals, terrain] = mesh;
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
@@ -210,7 +210,7 @@ void add(const Mesh& mesh, Digest& digest) {
     digest.add(primitive.has_value());
     if (primitive) add(*primitive, digest);
     add(cage, digest);
-    digest.add_all(cage_uvs, maps_normals);
+    digest.add_all(cage_uvs, maps_normals);  // a terrain is its triangles
 }
 
 void add(const TransferPoint& point, Digest& digest) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/description/material.h"
+#include "base/image/height_grid.h"
 
 namespace trilens {
 
@@ -34,13 +35,14 @@ struct ImportOptions {
 
 // How the scene room gets pixels without knowing the image room.
 
-/// Returns a linear Rec.709 picture, or throws
-/// an InputError that names the file. `encoded` overloads read a picture held in memory (GLB).
+/// Returns a linear Rec.709 picture, or the numbers of one, or throws an InputError that names the file.
+/// from_memory reads a picture held in memory (GLB).
 struct TextureReader {
     std::function<std::shared_ptr<const Texture>(const std::string& file)> from_file;
     std::function<std::shared_ptr<const Texture>(std::span<const unsigned char> encoded,
                                                  const std::string& name)>
         from_memory;
+    std::function<HeightGrid(const std::string& file)> heights_from_file = {};
 };
 
 }  // namespace trilens

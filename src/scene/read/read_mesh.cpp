@@ -32,10 +32,28 @@ Field<Mesh> shading_field() {
         "point.");
 }
 
+/// A terrain is an object.
+Field<Mesh> role_field() {
+    Field<Mesh> field = part<Mesh>("role", word_of({"object", "optic", "terrain"}));
+    field.read = [](const Json& json, Mesh& mesh) {
+        mesh.role = json == "optic" ? Role::kOptic : Role::kObject;
+    };
+    return field;
+}
+
+/// Keys that are read elsewhere.
+template <typename Part>
+void add_keys(const std::vector<Field<Part>>& of_part, MeshFields& fields) {
+    for (const Field<Part>& field : of_part) {
+        fields.emplace_back();
+        static_cast<FieldSchema&>(fields.back()) = field;
+    }
+}
+
 MeshFields all_mesh_fields() {
     MeshFields fields{
         setting("name", &Mesh::name, ref("name")),
-        choice("role", &Mesh::role).without_default(),
+        role_field(),
         part<Mesh>(
             "material", text_value(),
             "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own."),
@@ -77,18 +95,18 @@ MeshFields all_mesh_fields() {
         part<Mesh>("uvs1", list_of(ref("vec2"), 1),
                    "Of textures with texCoord 1, one per entry of faceVertexIndices."),
     };
-    for (const Field<Cage>& field : subdivision_fields()) {
-        fields.emplace_back();
-        static_cast<FieldSchema&>(fields.back()) = field;  // read where the cage is
-    }
+    add_keys(subdivision_fields(), fields);
+    add_keys(terrain_fields(), fields);
     fields.push_back(part<Mesh>("normals", ref("normals")));
     return fields;
 }
 
 // Which keys go together, whatever they hold.
 constexpr const char* kMeshRules = R"json({
-  "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] } ],
+  "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] }, { "required": ["heights"] } ],
   "dependencies": {
+    "heights": ["size"], "size": ["heights"], "noData": ["heights"], "heightError": ["heights"],
+    "thinning": ["heightError"], "region": ["heightError"],
     "points": ["faceVertexCounts", "faceVertexIndices"], "faceVertexCounts": ["points"], "faceVertexIndices": ["points"],
     "uvIndices": ["uvs"], "creaseIndices": ["creaseSharpnesses"], "creaseSharpnesses": ["creaseIndices"],
     "node": ["file"], "parts": ["node"], "clip": ["file"], "time": ["clip"],
@@ -96,7 +114,11 @@ constexpr const char* kMeshRules = R"json({
   },
   "allOf": [
     { "if": { "properties": { "role": { "const": "optic" } } },
-      "then": { "title": "an optic", "required": ["material"] } },
+      "then": { "title": "an optic", "required": ["material"], "properties": { "heights": false } } },
+    { "if": { "properties": { "role": { "const": "terrain" } } },
+      "then": { "title": "a terrain", "required": ["heights"] } },
+    { "if": { "required": ["heights"] },
+      "then": { "title": "a terrain", "properties": { "role": { "const": "terrain" }, "uvs": false, "uvIndices": false, "uvs1": false } } },
     { "if": { "required": ["file"] },
       "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
     { "if": { "required": ["primitive"] },
@@ -181,27 +203,6 @@ void check_optic_material(const Node& node, Id index, Reading& reading) {
     if (material.base_color_texture) reading.warn(node["material"].place, "a texture on an optic is ignored");
 }
 
-/// Into the cube that the mesh asks for.
-Transform fitting_transform(const Node& fit, const PolygonMesh& polygons) {
-    Box bounds;
-    for (const Vec3& point : polygons.cage.points) bounds.include(point);
-    const Vec3 sides = bounds.empty() ? Vec3(0) : bounds.high - bounds.low;
-    const double longest = std::max({sides.x, sides.y, sides.z});
-    if (!(longest > 0)) fit.fail("the mesh has no size that could be fitted");
-    const double factor = fit["size"].json.get<double>() / longest;
-    Transform transform;
-    transform.linear = Mat3(factor);
-    transform.translation = vec3_or(fit, "center", Vec3(0)) - factor * (0.5 * (bounds.low + bounds.high));
-    return transform;
-}
-
-void place_or_fail(PolygonMesh& polygons, const Node& node) {
-    if (!place(polygons, read_transform(node)))
-        node.fail("its transform carries points beyond coordinates of 1e30");
-    if (node.has("fit") && !place(polygons, fitting_transform(node["fit"], polygons)))
-        node["fit"].fail("carries points beyond coordinates of 1e30");
-}
-
 void warn_count(std::size_t count, const std::string& what, const std::string& place, Reading& reading) {
     if (count > 0) reading.warn(place, std::to_string(count) + " " + what);
 }
@@ -244,7 +245,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
         join_quads(polygons);
     if (polygons.cage.scheme == SubdivisionScheme::kUnsubdivided) cut_into_triangles(polygons);
     check_scheme(node, polygons.cage);
-    place_or_fail(polygons, node);
+    place_mesh(polygons, node);
     check_far_points(node, polygons.cage);
     read_optic_uvs(node, polygons, mesh, reading);
     mesh.cage = std::move(polygons.cage);
@@ -266,9 +267,9 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
 }
 
 /// Moves a file's own materials into the scene, and gives every triangle a material of the scene.
-void settle_materials(PolygonMesh& polygons, Mesh& mesh, Scene& scene) {
+void settle_materials(std::vector<Material>& own, Mesh& mesh, Scene& scene) {
     const auto first = static_cast<Id>(scene.materials.size());
-    for (Material& material : polygons.materials) {
+    for (Material& material : own) {
         material.name = mesh.name + "/" + material.name;
         scene.materials.push_back(std::move(material));
     }
@@ -303,6 +304,26 @@ void settle_second_uvs(const Node& node, ObjectMesh& object, Reading& reading) {
     object.second_uvs = object.uvs;
 }
 
+}  // namespace
+
+ObjectShading read_shading(const Node& node) {
+    return *find_named<ObjectShading>(
+        string_or(node, "shading", std::string(name_of(ObjectShading::kGivenNormals))));
+}
+
+namespace {
+
+/// In the world, with the normals that they are lit by.
+PolygonMesh read_object_polygons(const Node& node, Reading& reading) {
+    PolygonMesh polygons = node.has("file")        ? read_mesh_file(node, inherits(node), reading)
+                           : node.has("primitive") ? read_object_primitive(node["primitive"])
+                                                   : read_inline_polygons(node);
+    read_subdivision(node, polygons.cage);
+    place_mesh(polygons, node);
+    set_shading(polygons, read_shading(node));
+    return polygons;
+}
+
 void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     if (mesh.material != kNone) {
         const Material& material = reading.scene.materials[mesh.material];
@@ -312,25 +333,25 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
                 node["material"].place,
                 "a mirror or glass on an object is drawn as a plain surface: an optic reflects and refracts");
     }
-    PolygonMesh polygons = node.has("file")        ? read_mesh_file(node, inherits(node), reading)
-                           : node.has("primitive") ? read_object_primitive(node["primitive"])
-                                                   : read_inline_polygons(node);
-    read_subdivision(node, polygons.cage);
-    place_or_fail(polygons, node);
-    const std::string shading =
-        string_or(node, "shading", std::string(name_of(ObjectShading::kGivenNormals)));
-    set_shading(polygons, *find_named<ObjectShading>(shading));
-    mesh.face_count = polygons.cage.face_vertex_counts.size();
-    TriangulatedMesh triangulated = triangulate(polygons);
-    mesh.object = std::move(triangulated.object);
-    settle_materials(polygons, mesh, reading.scene);
+    std::vector<Material> own;
+    std::size_t uncovered_faces = 0;
+    if (node.has("heights")) {
+        read_terrain(node, mesh, reading);
+    } else {
+        PolygonMesh polygons = read_object_polygons(node, reading);
+        mesh.face_count = polygons.cage.face_vertex_counts.size();
+        TriangulatedMesh triangulated = triangulate(polygons);
+        mesh.object = std::move(triangulated.object);
+        uncovered_faces = triangulated.uncovered_faces;
+        own = std::move(polygons.materials);
+    }
+    settle_materials(own, mesh, reading.scene);
     settle_second_uvs(node, mesh.object, reading);
     const AlphaCut cut = cut_by_alpha(mesh.object, reading.scene.materials);
     warn_count(cut.too_fine, "triangles are not cut out by their picture, which has too many texels there",
                node.place, reading);
-    warn_count(triangulated.uncovered_faces,
-               "faces cross themselves: they are drawn as fans from their first corners", node.place,
-               reading);
+    warn_count(uncovered_faces, "faces cross themselves: they are drawn as fans from their first corners",
+               node.place, reading);
     warn_count(count_without_area(mesh.object), "triangles have no area", node.place, reading);
 }
 

@@ -202,4 +202,29 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
     return primitive;
 }
 
+namespace {
+
+/// Into the cube that the mesh asks for.
+Transform fitting_transform(const Node& fit, const PolygonMesh& polygons) {
+    Box bounds;
+    for (const Vec3& point : polygons.cage.points) bounds.include(point);
+    const Vec3 sides = bounds.empty() ? Vec3(0) : bounds.high - bounds.low;
+    const double longest = std::max({sides.x, sides.y, sides.z});
+    if (!(longest > 0)) fit.fail("the mesh has no size that could be fitted");
+    const double factor = fit["size"].json.get<double>() / longest;
+    Transform transform;
+    transform.linear = Mat3(factor);
+    transform.translation = vec3_or(fit, "center", Vec3(0)) - factor * (0.5 * (bounds.low + bounds.high));
+    return transform;
+}
+
+}  // namespace
+
+void place_mesh(PolygonMesh& polygons, const Node& node) {
+    if (!place(polygons, read_transform(node)))
+        node.fail("its transform carries points beyond coordinates of 1e30");
+    if (node.has("fit") && !place(polygons, fitting_transform(node["fit"], polygons)))
+        node["fit"].fail("carries points beyond coordinates of 1e30");
+}
+
 }  // namespace trilens

@@ -16,7 +16,9 @@
 #include "scene/data/primitive_mesh.h"
 #include "scene/data/scene.h"
 #include "scene/data/scene_inputs.h"
+#include "scene/data/vertex_normals.h"
 #include "scene/formats/gltf.h"
+#include "terrain/thinning.h"
 
 namespace trilens {
 
@@ -50,6 +52,15 @@ struct Reading {
     void warn(const std::string& place, const std::string& message) {
         scene.warnings.push_back(file + ": " + one_line((place.empty() ? "" : place + ": ") + message));
     }
+};
+
+/// The keys of a mesh that is a terrain.
+struct TerrainSettings {
+    std::string heights;
+    Vec3 size{1};
+    double no_data = 0;
+    double height_error = 0;
+    ThinningRule thinning = ThinningRule::kBound;
 };
 
 /// Reads each picture once. Throws what the texture reader throws.
@@ -91,6 +102,12 @@ Primitive read_primitive(const Node& primitive, const Transform& transform, cons
 /// The polygons of an object's primitive, in its own frame.
 PolygonMesh read_object_primitive(const Node& primitive);
 Transform read_transform(const Node& mesh);
+/// Moves a mesh as its `transform` and `fit` say. Throws InputError where points leave the range.
+void place_mesh(PolygonMesh& polygons, const Node& mesh);
+/// The triangles of an object that has heights, without materials; warns of holes.
+void read_terrain(const Node& node, Mesh& mesh, Reading& reading);
+/// What normals an object is lit by.
+ObjectShading read_shading(const Node& mesh);
 
 /// Inline points, faces and uvs of a mesh.
 PolygonMesh read_inline_polygons(const Node& mesh);
@@ -120,7 +137,9 @@ const std::vector<Field<RenderSettings>>& render_fields();
 const std::vector<Field<Volume>>& volume_entry_fields();
 const std::vector<Field<TransferPoint>>& transfer_point_fields();
 const std::vector<Field<Mesh>>& mesh_fields();
-const std::vector<Field<Cage>>& subdivision_fields();  // keys of a mesh, too
+const std::vector<Field<Cage>>& subdivision_fields();         // keys of a mesh, too
+const std::vector<Field<TerrainSettings>>& terrain_fields();  // keys of a mesh, too
+const std::vector<Field<InterestRegion>>& region_fields();
 const std::vector<Field<ObjectPrimitive>>& primitive_fields();
 const std::vector<Field<NormalOverride>>& normal_fields();
 
@@ -141,6 +160,7 @@ Json volume_grid_schema();  // of a volume
 Json transfer_schema();     // of a volume
 Json transfer_point_schema();
 Json mesh_schema();
+Json region_schema();  // of a terrain
 Json primitive_schema();
 Json normals_schema();
 

@@ -169,6 +169,7 @@ Json make_schema() {
     definitions["material"] = material_schema();
     definitions["texture"] = texture_schema();
     definitions["mesh"] = mesh_schema();
+    definitions["region"] = region_schema();
     definitions["primitive"] = primitive_schema();
     definitions["normals"] = normals_schema();
     definitions["light"] = light_schema();

@@ -1,0 +1,119 @@
+// Heights out of pictures: numbers as they are, shares of the greatest where integers have no sign.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "base/util/error.h"
+#include "image/image_io.h"
+#include "support/test.h"
+
+using namespace trilens;
+
+namespace {
+
+bool have_oiiotool() {
+    return std::system("command -v oiiotool > /dev/null 2>&1") == 0;
+}
+
+/// A ramp of 5 x 3 samples, 0 on the left to `most` on the right, by oiiotool.
+std::string ramp(const std::string& name, const std::string& type, double most, int channels = 1) {
+    const std::string folder = trilens_test::scratch_dir("heights_" + name), colour = std::to_string(most);
+    std::string left, right;
+    for (int c = 0; c < channels; ++c) {
+        left += (c > 0 ? ",0" : "0");
+        right += (c > 0 ? "," : "") + colour;
+    }
+    const std::string line = "cd '" + folder + "' && oiiotool --pattern fill:left=" + left +
+                             ":right=" + right + " 5x3 " + std::to_string(channels) + " -d " + type + " -o " +
+                             name + " > log.txt 2>&1";
+    REQUIRE(std::system(line.c_str()) == 0);
+    return folder + "/" + name;
+}
+
+void check_ramp(const HeightGrid& heights, double most, double tolerance) {
+    REQUIRE(heights.columns == 5);
+    REQUIRE(heights.rows == 3);
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 5; ++x)
+            CHECK(static_cast<double>(heights.at(x, y)) == Approx(most * x / 4).margin(tolerance));
+}
+
+void write_heights(const std::string& file, int columns, int rows, const std::vector<float>& values) {
+    Image image;
+    image.width = image.data_width = columns;
+    image.height = image.data_height = rows;
+    image.channels.push_back({"Y", values});
+    write_exr(file, image);
+}
+
+}  // namespace
+
+TEST_CASE("heights of pictures are their numbers, of unsigned integers their shares", "[image]") {
+    if (!have_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    check_ramp(read_heights(ramp("a.png", "uint16", 1)), 1, 1e-5);  // no sRGB in between
+    check_ramp(read_heights(ramp("b.png", "uint8", 1)), 1, 0.003);
+    check_ramp(read_heights(ramp("c.tif", "float", 1234.5)), 1234.5, 1e-3);
+    check_ramp(read_heights(ramp("d.tif", "uint16", 1)), 1, 1e-5);
+    check_ramp(read_heights(ramp("e.exr", "half", 8)), 8, 0.01);
+    // Signed integers are numbers: shares of 1 are of 32767.
+    check_ramp(read_heights(ramp("f.tif", "int16", 1)), 32767, 1);
+    const HeightGrid three = read_heights(ramp("g.tif", "uint16", 1, 3));
+    check_ramp(three, 1, 1e-5);
+    CHECK(three.channels == 3);
+}
+
+TEST_CASE("heights that are not finite come as they are", "[image][bad-input]") {
+    const std::string file = trilens_test::scratch_dir("odd_heights") + "/h.exr";
+    std::vector<float> values(12, 0.25f);
+    values[5] = std::numeric_limits<float>::quiet_NaN();
+    values[7] = -std::numeric_limits<float>::infinity();
+    write_heights(file, 4, 3, values);
+    const HeightGrid heights = read_heights(file);
+    CHECK(std::isnan(heights.at(1, 1)));
+    CHECK(std::isinf(heights.at(3, 1)));
+    CHECK(heights.at(0, 2) == 0.25f);
+}
+
+TEST_CASE("files of heights that lie, end early or are too large are refused by name", "[image][bad-input]") {
+    const std::string folder = trilens_test::scratch_dir("bad_heights");
+    CHECK_THROWS_AS(read_heights(folder + "/missing.exr"), InputError);
+    CHECK_THROWS_AS(read_heights(folder), InputError);
+    const std::string wide = folder + "/wide.exr";
+    write_heights(wide, kMostHeightsSide + 1, 2,
+                  std::vector<float>(2 * static_cast<std::size_t>(kMostHeightsSide + 1), 1));
+    CHECK_THROWS_WITH(read_heights(wide), wide + ": has 8194 x 2 samples, more than 8193 along a side");
+
+    const std::string whole = folder + "/whole.exr", cut = folder + "/cut.exr";
+    std::vector<float> noise;
+    for (int i = 0; i < 64 * 64; ++i) noise.push_back(static_cast<float>(i * 7919 % 1009));
+    write_heights(whole, 64, 64, noise);
+    std::ifstream in(whole, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+    CHECK_THROWS_AS(read_heights(cut), InputError);
+
+    if (!have_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    // A TIFF's header that claims a million times its pixels.
+    const std::string lying = ramp("lying.tif", "uint16", 1);
+    std::fstream tiff(lying, std::ios::binary | std::ios::in | std::ios::out);
+    std::string all{std::istreambuf_iterator<char>(tiff), {}};
+    bool changed = false;
+    for (std::size_t at = 0; at + 12 <= all.size(); ++at) {
+        const auto word = [&](std::size_t k) {
+            return static_cast<unsigned char>(all[at + k]) | static_cast<unsigned char>(all[at + k + 1]) << 8;
+        };
+        // Tags 256 and 257, little-endian: width and length.
+        if ((word(0) != 256 && word(0) != 257) || (word(2) != 3 && word(2) != 4) || word(4) != 1) continue;
+        all[at + 2] = 4;
+        all.replace(at + 8, 4, std::string("\0\x20\0\0", 4));  // 8192
+        changed = true;
+    }
+    REQUIRE(changed);
+    tiff.seekp(0);
+    tiff << all;
+    tiff.close();
+    CHECK_THROWS_AS(read_heights(lying), InputError);
+}
