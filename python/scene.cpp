@@ -93,7 +93,7 @@ void bind_parts(py::module_& module) {
     bind_fields(
         mesh, field("name", &MeshInfo::name, "Its name."),
         field("shape", &MeshInfo::shape,
-              "\"polygons\", \"terrain\", \"catmullClark\", \"loop\", \"bilinear\", \"sphere\", "
+              "\"polygons\", \"terrain\", \"patches\", \"catmullClark\", \"loop\", \"bilinear\", \"sphere\", "
               "\"paraboloid\",\n"
               "\"cylinder\", \"cone\" or \"plane\"."),
         field("material", &MeshInfo::material, "Its name; \"inherit\" where triangles carry their own."),

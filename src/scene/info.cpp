@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/data/check_scene.h"
+#include "scene/data/patches.h"
 
 namespace trilens {
 namespace {
@@ -51,6 +52,7 @@ Box primitive_box(const Primitive& primitive) {
 }
 
 std::string shape_name(const Mesh& mesh) {
+    if (mesh.of_patches) return "patches";
     if (mesh.role == Role::kObject) return mesh.terrain ? "terrain" : "polygons";
     return mesh.primitive ? kind_name(*mesh.primitive) : name_of(mesh.cage.scheme);
 }
@@ -72,7 +74,10 @@ MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
     info.holes = mesh.cage.hole_indices.size();
     info.resolution = is_object ? 0 : mesh.resolution;
     if (mesh.primitive) info.bounds = primitive_box(*mesh.primitive);
-    for (const Vec3& point : points) info.bounds.include(point);
+    if (mesh.of_patches && !is_object)
+        info.bounds = patch_bounds(mesh.cage);
+    else
+        for (const Vec3& point : points) info.bounds.include(point);
     if (mesh.terrain) {
         const Terrain& terrain = *mesh.terrain;
         info.terrain = TerrainInfo{terrain.heights->columns, terrain.heights->rows,  terrain.missing_heights,

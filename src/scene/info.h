@@ -22,16 +22,16 @@ struct TerrainInfo {
 struct MeshInfo {
     std::string name;
     Role role = Role::kObject;
-    std::string shape;  // "polygons", "terrain", "catmullClark", "loop", "bilinear", "sphere", "paraboloid",
-                        // "cylinder", "cone", "plane"
-    std::string material;       // its name; "inherit" where the triangles carry their own
-    std::size_t points = 0;     // 0 for a primitive
-    std::size_t faces = 0;      // 0 for a primitive
-    std::size_t triangles = 0;  // of an object
+    std::string shape;     // "polygons", "terrain", "patches", "catmullClark", "loop", "bilinear", "sphere",
+                           // "paraboloid", "cylinder", "cone", "plane"
+    std::string material;  // its name; "inherit" where the triangles carry their own
+    std::size_t points = 0;                           // 0 for a primitive
+    std::size_t faces = 0;                            // 0 for a primitive
+    std::size_t triangles = 0;                        // of an object
     std::size_t creases = 0, corners = 0, holes = 0;  // of a cage: crease edges, corner points, hole faces
     int resolution = 0;                               // of an optic
-    Box bounds;  // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a
-                 // little larger
+    Box bounds;  // an optic's: of its cage, or its patches' Bezier points, which hold its limit surface; of a
+                 // primitive: exact or a little larger
     std::optional<TerrainInfo> terrain;
 };
 

@@ -75,3 +75,8 @@ def png_data(png):
             data += png[at + 8:at + 8 + length]
         at += 12 + length
     return data
+
+
+def test_the_teapot_that_a_script_makes_is_as_it_makes_it(tmp_path):
+    subprocess.run([SOURCE / "scripts/make-teapot-scene", tmp_path], check=True, capture_output=True)
+    assert (tmp_path / "patches/teapot.json").read_text() == (SOURCE / "scenes/patches/teapot.json").read_text()

@@ -271,7 +271,7 @@ TEST_CASE("keys that need or exclude each other", "[scene]") {
          "/meshes/1/primitive/segments: are an object's: an optic is exact"},
         {"/meshes/1/fit", R"({"size":1})", "/meshes/1/fit: an optic's primitive has its own center and size"},
         {"/meshes/2", R"({"role":"object"})",
-         "/meshes/2: a mesh needs one of 'points', 'file', 'primitive' and 'heights'"},
+         "/meshes/2: a mesh needs one of 'points', 'file', 'primitive', 'heights' and 'patches'"},
         {"/meshes/1", R"({"role":"optic","primitive":{"type":"sphere"}})",
          "/meshes/1: an optic needs 'material'"},
         {"/background/rotate", "30", "/background: 'rotate' needs 'file' beside it"},

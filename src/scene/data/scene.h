@@ -113,6 +113,7 @@ struct Mesh {
     Cage cage;
     std::vector<Vec2> cage_uvs;  // where normals are mapped: per entry of cage.face_vertex_indices
     bool maps_normals = false;   // optic: its material's normal map turns its normals
+    bool of_patches = false;     // face_count patches; an optic's cage has them as B-splines
     std::shared_ptr<const Terrain> terrain;  // object: how it was made, where of heights
 };
 

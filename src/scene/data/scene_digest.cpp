@@ -201,7 +201,8 @@ void add(const Cage& cage, Digest& digest) {
 
 void add(const Mesh& mesh, Digest& digest) {
     [[maybe_unused]] const auto& [name, role, material, resolution, grid, rays, layered, face_count, normals,
-                                  priority, object, primitive, cage, cage_uvs, maps_normals, terrain] = mesh;
+                                  priority, object, primitive, cage, cage_uvs, maps_normals, of_patches,
+                                  terrain] = mesh;
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);

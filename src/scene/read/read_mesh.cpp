@@ -58,7 +58,7 @@ MeshFields all_mesh_fields() {
             "material", text_value(),
             "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own."),
         setting("resolution", &Mesh::resolution, whole_in(1, kMaxResolution),
-                "optic: N x N facets per quad face."),
+                "optic: N x N facets per quad face or patch; object of patches: N x N quads."),
         choice(
             "rays", &Mesh::rays,
             "optic: at the corners of its facets the exact rays, with straight interpolation between them, "
@@ -84,6 +84,8 @@ MeshFields all_mesh_fields() {
         part<Mesh>("clip", ref("index"), "Of a glTF: its animation of that number."),
         part<Mesh>("time", ref("number"), "Of a clip: seconds."),
         part<Mesh>("primitive", ref("primitive")),
+        part<Mesh>("patches", list_of(ref("patch"), 1),
+                   "Spline patches, of an optic as they are, of an object as N x N quads each."),
         part<Mesh>("points", list_of(ref("vec3"), 3)),
         part<Mesh>("faceVertexCounts", list_of(whole_in(3, 255), 1)),
         part<Mesh>("faceVertexIndices", list_of(ref("index"), 3)),
@@ -103,7 +105,7 @@ MeshFields all_mesh_fields() {
 
 // Which keys go together, whatever they hold.
 constexpr const char* kMeshRules = R"json({
-  "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] }, { "required": ["heights"] } ],
+  "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] }, { "required": ["heights"] }, { "required": ["patches"] } ],
   "dependencies": {
     "heights": ["size"], "size": ["heights"], "noData": ["heights"], "heightError": ["heights"],
     "thinning": ["heightError"], "region": ["heightError"],
@@ -121,6 +123,9 @@ constexpr const char* kMeshRules = R"json({
       "then": { "title": "a terrain", "properties": { "role": { "const": "terrain" }, "uvs": false, "uvIndices": false, "uvs1": false } } },
     { "if": { "required": ["file"] },
       "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
+    { "if": { "required": ["patches"] },
+      "then": { "title": "a mesh of patches", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
+        "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } },
     { "if": { "required": ["primitive"] },
       "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
         "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } }
@@ -236,6 +241,12 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
         mesh.maps_normals = reading.scene.materials[mesh.material].normal_texture.picture != nullptr;
         return;
     }
+    if (node.has("patches")) {
+        const bool is_glass = reading.scene.materials[mesh.material].transmission_factor == 1;
+        read_optic_patches(node, is_glass, mesh, reading);
+        read_optic_uvs(node, {}, mesh, reading);
+        return;
+    }
     PolygonMesh polygons =
         node.has("file") ? read_mesh_file(node, false, reading) : read_inline_polygons(node);
     // Triangle meshes have points once per seam, cages once.
@@ -314,7 +325,12 @@ ObjectShading read_shading(const Node& node) {
 namespace {
 
 /// In the world, with the normals that they are lit by.
-PolygonMesh read_object_polygons(const Node& node, Reading& reading) {
+PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, Reading& reading) {
+    if (node.has("patches")) {
+        PolygonMesh polygons = read_object_patches(node, mesh);
+        set_shading(polygons, read_shading(node));
+        return polygons;
+    }
     PolygonMesh polygons = node.has("file")        ? read_mesh_file(node, inherits(node), reading)
                            : node.has("primitive") ? read_object_primitive(node["primitive"])
                                                    : read_inline_polygons(node);
@@ -338,8 +354,8 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     if (node.has("heights")) {
         read_terrain(node, mesh, reading);
     } else {
-        PolygonMesh polygons = read_object_polygons(node, reading);
-        mesh.face_count = polygons.cage.face_vertex_counts.size();
+        PolygonMesh polygons = read_object_polygons(node, mesh, reading);
+        if (!mesh.of_patches) mesh.face_count = polygons.cage.face_vertex_counts.size();
         TriangulatedMesh triangulated = triangulate(polygons);
         mesh.object = std::move(triangulated.object);
         uncovered_faces = triangulated.uncovered_faces;

@@ -12,6 +12,7 @@
 
 #include "json/fields.h"
 #include "json/json.h"
+#include "scene/data/patches.h"
 #include "scene/data/polygons.h"
 #include "scene/data/primitive_mesh.h"
 #include "scene/data/scene.h"
@@ -63,6 +64,13 @@ struct TerrainSettings {
     ThinningRule thinning = ThinningRule::kBound;
 };
 
+/// One entry of a mesh's `patches`, but for its points.
+struct WrittenPatch {
+    PatchKind kind = PatchKind::kBezier;
+    int columns = 4;
+};
+inline constexpr int kMostSplineColumns = 10000;
+
 /// Reads each picture once. Throws what the texture reader throws.
 std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string& path);
 
@@ -106,6 +114,10 @@ Transform read_transform(const Node& mesh);
 void place_mesh(PolygonMesh& polygons, const Node& mesh);
 /// The triangles of an object that has heights, without materials; warns of holes.
 void read_terrain(const Node& node, Mesh& mesh, Reading& reading);
+/// The patches of an optic as its cage; warns of glass whose patches do not close.
+void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& reading);
+/// The patches of an object as polygons, in the world.
+PolygonMesh read_object_patches(const Node& node, Mesh& mesh);
 /// What normals an object is lit by.
 ObjectShading read_shading(const Node& mesh);
 
@@ -140,6 +152,7 @@ const std::vector<Field<Mesh>>& mesh_fields();
 const std::vector<Field<Cage>>& subdivision_fields();         // keys of a mesh, too
 const std::vector<Field<TerrainSettings>>& terrain_fields();  // keys of a mesh, too
 const std::vector<Field<InterestRegion>>& region_fields();
+const std::vector<Field<WrittenPatch>>& patch_fields();
 const std::vector<Field<ObjectPrimitive>>& primitive_fields();
 const std::vector<Field<NormalOverride>>& normal_fields();
 
@@ -161,6 +174,7 @@ Json transfer_schema();     // of a volume
 Json transfer_point_schema();
 Json mesh_schema();
 Json region_schema();  // of a terrain
+Json patch_schema();   // of a mesh
 Json primitive_schema();
 Json normals_schema();
 

@@ -170,6 +170,7 @@ Json make_schema() {
     definitions["texture"] = texture_schema();
     definitions["mesh"] = mesh_schema();
     definitions["region"] = region_schema();
+    definitions["patch"] = patch_schema();
     definitions["primitive"] = primitive_schema();
     definitions["normals"] = normals_schema();
     definitions["light"] = light_schema();

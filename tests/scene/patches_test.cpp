@@ -1,0 +1,205 @@
+// Spline patches: exact conversions, derivatives, blends, and the polygons of objects.
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "scene/data/patches.h"
+#include "scene/info.h"
+#include "scene/scene_text.h"
+#include "support/draw.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+BezierPatch random_patch(std::uint64_t seed) {
+    Draw draw(seed);
+    BezierPatch patch;
+    for (std::size_t k = 0; k < 16; ++k)
+        patch[k] = Vec3(static_cast<double>(k % 4), static_cast<double>(k / 4), 0) +
+                   Vec3(draw.uniform(-0.4, 0.4), draw.uniform(-0.4, 0.4), draw.uniform(-1, 1));
+    return patch;
+}
+
+/// De Casteljau's construction.
+Vec3 on_curve(BezierCurve points, double t) {
+    for (std::size_t left = 3; left > 0; --left)
+        for (std::size_t k = 0; k < left; ++k) points[k] = (1 - t) * points[k] + t * points[k + 1];
+    return points[0];
+}
+
+Vec3 on_patch(const BezierPatch& p, const Vec2& uv) {
+    BezierCurve column;
+    for (std::size_t j = 0; j < 4; ++j)
+        column[j] = on_curve({p[4 * j], p[4 * j + 1], p[4 * j + 2], p[4 * j + 3]}, uv.x);
+    return on_curve(column, uv.y);
+}
+
+constexpr std::array<Vec2, 5> kPlaces{Vec2(0, 0), Vec2(1, 0.25), Vec2(0.3, 0.7), Vec2(0.5, 0.5),
+                                      Vec2(0.9, 1)};
+
+std::string numbers(const std::vector<Vec3>& points) {
+    std::string text;
+    for (const Vec3& p : points)
+        text += (text.empty() ? "[" : ", [") + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
+                std::to_string(p.z) + "]";
+    return "[" + text + "]";
+}
+
+std::string patch_scene(const std::string& patches, const std::string& mesh = R"("role": "object")") {
+    return R"({"version": 1, "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 1, 4], "at": [0, 0, 0]}}],
+        "materials": [{"name": "glass", "transmissionFactor": 1}],
+        "meshes": [{"name": "sheet", )" +
+           mesh + ", \"patches\": [" + patches + "]}]}";
+}
+
+std::string bezier_text(const BezierPatch& patch) {
+    return R"({"type": "bezier", "points": )" + numbers({patch.begin(), patch.end()}) + "}";
+}
+
+}  // namespace
+
+TEST_CASE("a Bezier patch is where de Casteljau's construction finds it", "[scene][patches]") {
+    const BezierPatch patch = random_patch(1);
+    for (const Vec2& uv : kPlaces) CHECK(length(evaluate(patch, uv).position - on_patch(patch, uv)) < 1e-13);
+}
+
+TEST_CASE("derivatives and normals of a patch are those of small steps", "[scene][patches]") {
+    const BezierPatch patch = random_patch(2);
+    const double h = 1e-4;
+    const auto at = [&](double u, double v) { return on_patch(patch, Vec2(u, v)); };
+    for (const Vec2& uv : kPlaces) {
+        const double u = uv.x, v = uv.y;
+        const SurfacePoint p = evaluate(patch, uv);
+        const Vec3 du = (at(u + h, v) - at(u - h, v)) / (2 * h), dv = (at(u, v + h) - at(u, v - h)) / (2 * h);
+        CHECK(length(p.du - du) < 1e-6);
+        CHECK(length(p.dv - dv) < 1e-6);
+        CHECK(length(p.duu - (at(u + h, v) - 2. * at(u, v) + at(u - h, v)) / (h * h)) < 1e-5);
+        CHECK(length(p.dvv - (at(u, v + h) - 2. * at(u, v) + at(u, v - h)) / (h * h)) < 1e-5);
+        CHECK(length(p.duv - (at(u + h, v + h) - at(u - h, v + h) - at(u + h, v - h) + at(u - h, v - h)) /
+                                 (4 * h * h)) < 1e-5);
+        CHECK(length(p.normal - normalize(cross(du, dv))) < 1e-6);
+    }
+}
+
+TEST_CASE("Bezier patches and B-splines turn into each other and back", "[scene][patches]") {
+    const BezierPatch patch = random_patch(3);
+    const std::vector<BezierPatch> back = beziers_of(spline_of(patch));
+    REQUIRE(back.size() == 1);
+    for (std::size_t k = 0; k < 16; ++k) CHECK(length(back[0][k] - patch[k]) < 1e-13);
+
+    // Patches of one B-spline meet with equal derivatives up to the second.
+    Draw draw(4);
+    SplineGrid grid{6, {}};
+    for (int k = 0; k < 30; ++k) grid.points.emplace_back(k % 6, k / 6, draw.uniform(-1, 1));
+    const std::vector<BezierPatch> patches = beziers_of(grid);
+    REQUIRE(patches.size() == 3 * 2);
+    for (const double v : {0.0, 0.3, 1.0}) {
+        const SurfacePoint a = evaluate(patches[1], Vec2(1, v)), b = evaluate(patches[2], Vec2(0, v));
+        CHECK(length(a.position - b.position) < 1e-13);
+        CHECK(length(a.du - b.du) < 1e-13);
+        CHECK(length(a.duu - b.duu) < 1e-12);
+    }
+    // The uniform cubic B-spline's value at a knot.
+    const Vec3 corner = evaluate(patches[0], Vec2(0, 0)).position;
+    Vec3 mean(0);
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            mean += (i == 1 ? 4. : 1.) * (j == 1 ? 4. : 1.) / 36 *
+                    grid.points[static_cast<std::size_t>(6 * j + i)];
+    CHECK(length(corner - mean) < 1e-14);
+}
+
+TEST_CASE("a Coons patch is the blend of its four curves everywhere", "[scene][patches]") {
+    Draw draw(5);
+    const auto between = [&](const Vec3& a, const Vec3& b) {
+        BezierCurve curve{a, a + (b - a) / 3., a + 2. * (b - a) / 3., b};
+        for (const std::size_t k : {1u, 2u})
+            curve[k] += Vec3(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        return curve;
+    };
+    const Vec3 p00(0, 0, 0.3), p10(3, 0, -0.2), p01(0, 2, 0.1), p11(3.5, 2, 0.9);
+    const std::array<BezierCurve, 4> curves{between(p00, p10), between(p01, p11), between(p00, p01),
+                                            between(p10, p11)};
+    const BezierPatch patch = coons_patch(curves);
+    for (int j = 0; j <= 8; ++j)
+        for (int i = 0; i <= 8; ++i) {
+            const double u = i / 8., v = j / 8.;
+            const Vec3 bilinear = (1 - v) * ((1 - u) * p00 + u * p10) + v * ((1 - u) * p01 + u * p11);
+            const Vec3 blend = (1 - v) * on_curve(curves[0], u) + v * on_curve(curves[1], u) +
+                               (1 - u) * on_curve(curves[2], v) + u * on_curve(curves[3], v) - bilinear;
+            REQUIRE(length(on_patch(patch, Vec2(u, v)) - blend) < 1e-13);
+        }
+}
+
+TEST_CASE("objects of patches are polygons with the patch's normals", "[scene][patches]") {
+    BezierPatch cap = random_patch(6);
+    for (std::size_t k = 0; k < 4; ++k) cap[k] = Vec3(1.5, -1, 0);  // one edge is a point
+    const Scene scene = load_text(patch_scene(bezier_text(random_patch(7)) + ", " + bezier_text(cap),
+                                              R"("role": "object", "resolution": 5)"));
+    const Mesh& mesh = scene.meshes[0];
+    CHECK(mesh.face_count == 2);
+    CHECK(make_scene_info(scene).meshes[0].shape == "patches");
+    CHECK(mesh.object.triangles.size() == 2 * 25 + 2 * 20 + 5);
+    for (std::size_t t = 0; t < mesh.object.triangles.size(); ++t) {
+        const auto& [a, b, c] = mesh.object.triangles[t];
+        const Vec3 front = cross(mesh.object.points[b] - mesh.object.points[a],
+                                 mesh.object.points[c] - mesh.object.points[a]);
+        CHECK(length(front) > 0);
+        for (const Vec3& normal : mesh.object.normals[t]) {
+            CHECK(length(normal) == Approx(1));
+            CHECK(dot(normal, front) > 0);
+        }
+    }
+}
+
+TEST_CASE("edges without a neighbour are counted, points are no edges", "[scene][patches]") {
+    const BezierPatch patch = random_patch(8);
+    CHECK(count_open_edges({patch}) == 4);
+    BezierPatch beside = random_patch(9);
+    for (std::size_t j = 0; j < 4; ++j) beside[4 * j] = patch[4 * (3 - j) + 3];  // against it
+    CHECK(count_open_edges({patch, beside}) == 6);
+    beside[0] += Vec3(1e-3, 0, 0);
+    CHECK(count_open_edges({patch, beside}) == 8);
+    BezierPatch cap = patch;
+    for (std::size_t k = 1; k < 4; ++k) cap[k] = cap[0];
+    CHECK(count_open_edges({cap}) == 3);
+
+    const Scene scene = load_text(patch_scene(bezier_text(patch), R"("role": "optic", "material": "glass")"));
+    bool warned = false;
+    for (const std::string& warning : scene.warnings)
+        warned = warned || contains(warning, "4 edges of patches have no other along them");
+    CHECK(warned);
+    CHECK(make_scene_info(scene).meshes[0].faces == 1);
+    Box hull;
+    for (const Vec3& point : patch) hull.include(point);
+    const Box bounds = make_scene_info(scene).meshes[0].bounds;
+    CHECK(length(bounds.low - hull.low) < 1e-5);  // the scene's text has six digits
+    CHECK(length(bounds.high - hull.high) < 1e-5);
+}
+
+TEST_CASE("patches that cannot be are refused with their place", "[scene][patches][bad-input]") {
+    const std::vector<Vec3> some(17, Vec3(1, 2, 3));
+    const auto refusal = [](const std::string& patch, const std::string& mesh = R"("role": "object")") {
+        return error_of(patch_scene(patch, mesh));
+    };
+    CHECK(contains(refusal(R"({"type": "bezier", "points": )" + numbers(some) + "}"),
+                   "/meshes/0/patches/0/points: a Bezier patch has 16 points, not 17"));
+    CHECK(contains(refusal(R"({"type": "bspline", "columns": 5, "points": )" + numbers(some) + "}"),
+                   "/meshes/0/patches/0/points: 17 points are not at least 4 rows of 5"));
+    CHECK(contains(refusal(R"({"type": "nurbs", "points": [[0,0,0]]})"), "/meshes/0/patches/0/type"));
+    CHECK(contains(refusal(R"({"type": "coons", "points": [[0,0,0]]})"), "/meshes/0/patches/0"));
+    CHECK(contains(
+        refusal(
+            R"({"type": "coons", "curves": [[[0,0,0],[1,0,0],[2,0,0],[3,0,0]], [[0,3,0],[1,3,0],[2,3,0],[3,3,0]],
+                                [[0,0,0],[0,1,0],[0,2,0],[0,3,0]], [[3,0,0],[3,1,0],[3,2,0],[3,3,1]]]})"),
+        "/meshes/0/patches/0/curves: the curves' ends do not agree: those along u end at [3,3,0], "
+        "those along v at [3,3,1]"));
+    CHECK(contains(refusal(bezier_text(random_patch(1)), R"("role": "object", "subdivisionScheme": "loop")"),
+                   "/meshes/0/subdivisionScheme"));
+    CHECK(
+        contains(refusal(bezier_text(random_patch(1)), R"("role": "object", "file": "a.obj")"), "/meshes/0"));
+}
