@@ -18,6 +18,10 @@ constexpr double kThin = 0.1;
 /// A piece that would bring less than this share of the light's mean over the scene, if all of it came to the
 /// footprint, is not divided further.
 constexpr double kFaintPiece = 3e-4;
+/// Nor is one that would bring so much to the wrong side of its sides, in the same measure, if they are bent.
+constexpr double kMisplaced = 3e-2;
+/// Rays between those at a part's ends and middles may lie so much farther out than they.
+constexpr double kWider = 1.5;
 /// What a point without a footprint is looked at by: a share of the scene's size.
 constexpr double kPointSize = 1e-4;
 /// Of one source; some 600 bytes each.
@@ -66,7 +70,7 @@ RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, co
       recent_(std::make_unique<RecentDivisions>()) {
     find_sides();
     const Vec3 all = beams.flux_arriving();
-    faint_ = kFaintPiece * (all.x + all.y + all.z) / (space.size * space.size);
+    mean_light_ = (all.x + all.y + all.z) / (space.size * space.size);
 }
 
 void RefinedBeams::find_sides() {
@@ -178,11 +182,19 @@ struct RefinedBeams::Visit {
         use(corners, fallen);
     }
 
-    bool is_faint(const Ends& end) const {
+    /// What all of the part would bring to the footprint, as a share of the light's mean over the scene.
+    double brightness(const Ends& end) const {
         double brightest = 0;
         for (const BeamEnd* one : end)
             brightest = std::max(brightest, one->light.x + one->light.y + one->light.z);
-        return refined.corners(beam, end).measure * brightest < refined.faint_ * plane.unit_area;
+        return refined.corners(beam, end).measure * brightest / (refined.mean_light_ * plane.unit_area);
+    }
+
+    /// Of what the part brings, how much its chords may put beside its place.
+    bool is_in_place(const Ends& end, const std::array<Vec2, 6>& at, double bulge) const {
+        const double area = std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
+        const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
+        return brightness(end) * std::min(area, bulge * side) <= kMisplaced * area;
     }
 
     bool is_beyond(std::span<const Vec2> at, double room) const {
@@ -208,22 +220,59 @@ struct RefinedBeams::Visit {
         });
     }
 
+    const BeamDivision& division(const Part& part, int level,
+                                 std::shared_ptr<const BeamDivision>& own) const {
+        return level == 0 ? refined.division(beam) : refined.division_for_now(beam, part, own);
+    }
+
+    /// Whether the cone around the rays, made half as wide again, holds a part of the footprint.
+    bool may_come(const std::array<const BeamEnd*, 6>& rays) const {
+        Vec3 center(0), axis(0);
+        for (const BeamEnd* ray : rays) center += ray->origin / 6.0, axis += ray->direction;
+        axis = normalize_or_zero(axis);
+        double radius = 0, cosine = 1;
+        for (const BeamEnd* ray : rays) {
+            radius = std::max(radius, length(ray->origin - center));
+            cosine = std::min(cosine, dot(ray->direction, axis));
+        }
+        const Vec3 way = plane.point - center;
+        const double far = length(way), near = kWider * radius + plane.reach;
+        if (far <= near) return true;
+        return std::acos(std::clamp(dot(way, axis) / far, -1.0, 1.0)) <=
+               kWider * std::acos(std::clamp(cosine, -1.0, 1.0)) + std::asin(near / far);
+    }
+
+    /// Of a part some of whose rays go away from the plane: divided until what crosses its horizon is faint.
+    void visit_half(const Part& part, int level) const {
+        if (level + 1 >= kMostLevels || brightness(part.end) < kFaintPiece) return use_part(part.end);
+        std::shared_ptr<const BeamDivision> own;
+        const BeamDivision& by = division(part, level, own);
+        const std::array<const BeamEnd*, 6> rays{part.end[0],   part.end[1],   part.end[2],
+                                                 &by.middle[0], &by.middle[1], &by.middle[2]};
+        if (std::none_of(rays.begin(), rays.end(),
+                         [&](const BeamEnd* ray) { return place_on(plane, *ray).has_value(); }) ||
+            !may_come(rays))
+            return;
+        const std::array<Ends, 4> parts = quarters(part.end, by.middle);
+        for (std::size_t i = 0; i < 4; ++i)
+            visit({parts[i], by.part[i], place_of_part(part.place, i)}, level + 1, INFINITY);
+    }
+
     void visit(const Part& part, int level, double guess) const {
         const Ends& end = part.end;
         std::array<Vec2, 6> at;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, *end[k]);
-            if (!on) return use_part(end);
+            if (!on) return visit_half(part, level);
             at[k] = *on;
         }
         if (is_beyond(std::span(at).first(3), guess)) return;
         std::shared_ptr<const BeamDivision> own;
-        const BeamDivision& by =
-            level == 0 ? refined.division(beam) : refined.division_for_now(beam, part, own);
+        const BeamDivision& by = division(part, level, own);
         double bulge = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, by.middle[k]);
-            if (!on) return use_part(end);
+            if (!on) return visit_half(part, level);
             at[3 + k] = *on;
             bulge = std::max(bulge, length(*on - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
         }
@@ -231,7 +280,8 @@ struct RefinedBeams::Visit {
         const std::array<Ends, 4> parts = quarters(end, by.middle);
         const std::array<std::array<Vec2, 3>, 4> on_plane{
             {{at[0], at[5], at[4]}, {at[5], at[1], at[3]}, {at[4], at[3], at[2]}, {at[3], at[4], at[5]}}};
-        const bool is_last = level + 1 >= kMostLevels || is_flat(at, bulge) || is_faint(end);
+        const bool is_last = level + 1 >= kMostLevels || brightness(end) < kFaintPiece ||
+                             (is_flat(at, bulge) && is_in_place(end, at, bulge));
         for (std::size_t i = 0; i < 4; ++i) {
             if (is_last)
                 use_whole(parts[i], on_plane[i]);
@@ -256,7 +306,7 @@ void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double gu
                       use,
                       plane.has_footprint ? 1 : kPointSize * space_.size,
                       plane.has_footprint ? 0.5 : 0};
-    if (!whole) return visit.use_part(end);
+    if (!whole) return visit.visit_half({end, division_[beam], kWholeBeam}, 0);
     const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
     visit.visit({end, division_[beam], kWholeBeam}, 0, std::max(guess, 0.5 * side));
 }

@@ -86,7 +86,7 @@ class RefinedBeams {
     LightSpace space_;
     BeamSource source_;
     const Beams* beams_ = nullptr;
-    double faint_ = 0;                                // sum of colours per world area
+    double mean_light_ = 0;                           // sum of colours per world area
     std::vector<std::array<Id, 3>> side_;             // of each beam, across from its ends: of side_middle_
     std::vector<BeamEnd> side_middle_;                // neighbours share them
     std::unique_ptr<Lazy<BeamDivision>[]> division_;  // by beam
