@@ -45,10 +45,6 @@ std::string write(const std::string& folder, const std::string& name, const Imag
     return folder + "/" + name;
 }
 
-bool has_oiiotool() {
-    return std::system("command -v oiiotool > /dev/null 2>&1") == 0;
-}
-
 void oiiotool(const std::string& folder, const std::string& arguments) {
     REQUIRE(std::system(("cd '" + folder + "' && oiiotool " + arguments + " > log.txt 2>&1").c_str()) == 0);
 }
@@ -139,7 +135,7 @@ TEST_CASE("PNG pictures are compared in linear light, with each other and with O
 }
 
 TEST_CASE("half against float, and a part of several", "[cli][compare]") {
-    if (!has_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    if (!has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     const std::string folder = scratch_dir("cli_compare_parts");
     write(folder, "a.exr", coloured(""));
     oiiotool(folder, "a.exr -d half -o half.exr");

@@ -13,10 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool has_program(const std::string& name) {
-    return std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0;
-}
-
 /// What a shell line prints, both streams.
 std::string output_of(const std::string& line) {
     static const std::string folder = scratch_dir("cli_manual_lines");

@@ -14,10 +14,6 @@ using namespace trilens;
 
 namespace {
 
-bool have_oiiotool() {
-    return std::system("command -v oiiotool > /dev/null 2>&1") == 0;
-}
-
 /// A ramp of 5 x 3 samples, 0 on the left to `most` on the right, by oiiotool.
 std::string ramp(const std::string& name, const std::string& type, double most, int channels = 1) {
     const std::string folder = trilens_test::scratch_dir("heights_" + name), colour = std::to_string(most);
@@ -52,7 +48,7 @@ void write_heights(const std::string& file, int columns, int rows, const std::ve
 }  // namespace
 
 TEST_CASE("heights of pictures are their numbers, of unsigned integers their shares", "[image]") {
-    if (!have_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     check_ramp(read_heights(ramp("a.png", "uint16", 1)), 1, 1e-5);  // no sRGB in between
     check_ramp(read_heights(ramp("b.png", "uint8", 1)), 1, 0.003);
     check_ramp(read_heights(ramp("c.tif", "float", 1234.5)), 1234.5, 1e-3);
@@ -95,7 +91,7 @@ TEST_CASE("files of heights that lie, end early or are too large are refused by 
     std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
     CHECK_THROWS_AS(read_heights(cut), InputError);
 
-    if (!have_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     // A TIFF's header that claims a million times its pixels.
     const std::string lying = ramp("lying.tif", "uint16", 1);
     std::fstream tiff(lying, std::ios::binary | std::ios::in | std::ios::out);

@@ -23,10 +23,6 @@ double linear_from_srgb(double v) {
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-bool have_oiiotool() {
-    return std::system("command -v oiiotool > /dev/null 2>&1") == 0;
-}
-
 void oiiotool(const std::string& folder, const std::string& arguments) {
     const std::string line = "cd '" + folder + "' && oiiotool " + arguments + " > log.txt 2>&1";
     REQUIRE(std::system(line.c_str()) == 0);
@@ -124,7 +120,7 @@ TEST_CASE("values outside 0..1 and NaN have a defined colour", "[image][bad-inpu
 }
 
 TEST_CASE("pictures of every kind become linear", "[image]") {
-    if (!have_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     const std::string folder = trilens_test::scratch_dir("textures");
     const std::array<double, 3> stored = {0.8, 0.4, 0.2};
     std::array<double, 3> linear{};

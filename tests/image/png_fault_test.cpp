@@ -71,7 +71,7 @@ TEST_CASE("a PNG with any damaged byte is read or refused without a word on stde
 }
 
 TEST_CASE("parts of an OpenEXR file come by name, each with its channels", "[image][png]") {
-    if (std::system("command -v oiiotool > /dev/null 2>&1") != 0) TRILENS_SKIP("needs oiiotool");
+    if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     const std::string folder = trilens_test::scratch_dir("image_parts");
     const auto make = [&](const std::string& arguments) {
         REQUIRE(std::system(("cd '" + folder + "' && oiiotool " + arguments + " > log.txt 2>&1").c_str()) ==

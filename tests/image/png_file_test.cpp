@@ -54,7 +54,7 @@ TEST_CASE("an ordinary PNG has the values that the library of all pictures gives
     REQUIRE(texture);
     CHECK(texture->rgb == library().decode(own, "own")->rgb);
 
-    if (std::system("command -v oiiotool > /dev/null 2>&1") != 0) TRILENS_SKIP("needs oiiotool");
+    if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     const std::string folder = trilens_test::scratch_dir("ordinary_png");
     for (const std::string channels : {"1", "2 --chnames Y,A", "3", "4"}) {
         INFO(channels);

@@ -255,27 +255,23 @@ void check_stage(const Stage& stage, const std::string& name, double same) {
     CHECK(a.trapped < kPovrayWidth * kPovrayHeight / 100);
 }
 
-bool povray_missing() {
-    return std::system("command -v povray >/dev/null 2>&1") != 0;
-}
-
 const Ball kGlassBall{{0, 0.1, 0}, 1, 1.5};
 const Ball kLeft{{-0.9, 0.2, -0.2}, 0.8}, kRight{{0.95, -0.1, 0.3}, 0.75};
 
 }  // namespace
 
 TEST_CASE("POV-Ray sees the same squares through a glass ball", "[laws][povray][oracle][law]") {
-    if (povray_missing()) TRILENS_SKIP("needs povray");
+    if (!has_program("povray")) TRILENS_SKIP("needs povray");
     check_stage({{kGlassBall}, povray_room()}, "glass ball", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares in two mirror balls", "[laws][povray][oracle][law]") {
-    if (povray_missing()) TRILENS_SKIP("needs povray");
+    if (!has_program("povray")) TRILENS_SKIP("needs povray");
     check_stage({{kLeft, kRight}, povray_room()}, "two mirrors", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray][oracle][law]") {
-    if (povray_missing()) TRILENS_SKIP("needs povray");
+    if (!has_program("povray")) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall, {{0.15, 0.2, 0.1}, 0.55, 1.2, 1}}, povray_room()};
     check_stage(stage, "water in glass", kSameColour);
     stage.balls[1].ior = 1;  // a bubble
@@ -286,7 +282,7 @@ TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray
 
 TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass and a mirror",
           "[laws][povray][oracle][law]") {
-    if (povray_missing()) TRILENS_SKIP("needs povray");
+    if (!has_program("povray")) TRILENS_SKIP("needs povray");
     Stage stage{{{{0, 0.1, 0}, 2, 1.5}, {{0.15, 0.2, -0.3}, 0.55, 1.2, 1}, {{-0.9, -0.2, -0.4}, 0.35}},
                 povray_room()};
     stage.eye = {0.2, 0.4, 1.4};
@@ -298,7 +294,7 @@ TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass 
 }
 
 TEST_CASE("POV-Ray weighs reflection and transmission of a glass ball alike", "[laws][povray][oracle][law]") {
-    if (povray_missing()) TRILENS_SKIP("needs povray");
+    if (!has_program("povray")) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall}, povray_room()};
     stage.fresnel = true;
     check_stage(stage, "glass ball with Fresnel", 1e-3);

@@ -15,10 +15,6 @@ using namespace trilens_test;
 
 namespace {
 
-bool have(const std::string& program) {
-    return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
-}
-
 /// What a command prints.
 std::string output_of(const std::string& command) {
     std::string text;
@@ -38,7 +34,7 @@ double number_after(const std::string& text, const std::string& label) {
 }  // namespace
 
 TEST_CASE("numbers agree with oiiotool, verdicts do where its own are right", "[measure][compare][oracle]") {
-    if (!have("oiiotool") || !have("idiff")) TRILENS_SKIP("needs oiiotool and idiff");
+    if (!has_program("oiiotool") || !has_program("idiff")) TRILENS_SKIP("needs oiiotool and idiff");
     const std::string folder = trilens_test::scratch_dir("compare_oiio");
     for (const unsigned seed : {10u, 12u}) {
         const Image a = noise(seed, 37, 23), change = noise(seed + 100, 37, 23, -0.02f, 0.03f);

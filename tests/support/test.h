@@ -20,13 +20,15 @@ void note_skip(const std::string& test, const std::string& why);
 std::string source_dir();
 /// Where it is built: the command, the public headers.
 std::string build_dir();
-/// Cages and models that are not part of the project, as CMake's TRILENS_DATA_DIR names them; empty or missing
-/// where there are none: see data_missing.
+/// Cages and models that are not part of the project, as CMake's TRILENS_DATA_DIR names them; empty or
+/// missing where there are none: see data_missing.
 std::string data_dir();
 /// Whether data_dir()/`relative` is missing.
 bool data_missing(const std::string& relative);
 /// A folder under the build tree for this test's files, made empty; no other test has it.
 std::string scratch_dir(const std::string& name);
+/// Whether the shell finds a program of this name.
+bool has_program(const std::string& name);
 
 }  // namespace trilens_test
 
@@ -41,7 +43,8 @@ inline void ignore(const std::string&) {}
     } while (false)
 
 /// Skips where a file of the outside data is missing.
-#define TRILENS_NEEDS_DATA(relative) \
-    if (trilens_test::data_missing(relative)) TRILENS_SKIP(std::string("needs ") + (relative) + " of TRILENS_DATA_DIR")
+#define TRILENS_NEEDS_DATA(relative)          \
+    if (trilens_test::data_missing(relative)) \
+    TRILENS_SKIP(std::string("needs ") + (relative) + " of TRILENS_DATA_DIR")
 
 #endif
