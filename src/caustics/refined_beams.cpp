@@ -29,6 +29,11 @@ constexpr std::size_t kMostKept = 1 << 17;
 
 using Ends = BeamEnds;
 
+/// Of a triangle, whatever follows its corners.
+double longest_side(std::span<const Vec2> at) {
+    return std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
+}
+
 }  // namespace
 
 std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle) {
@@ -182,19 +187,21 @@ struct RefinedBeams::Visit {
         use(corners, fallen);
     }
 
-    /// What all of the part would bring to the footprint, as a share of the light's mean over the scene.
+    /// What all of the part would bring to the footprint (of a point: to what it is looked at by), as a share
+    /// of the light's mean over the scene.
     double brightness(const Ends& end) const {
         double brightest = 0;
         for (const BeamEnd* one : end)
             brightest = std::max(brightest, one->light.x + one->light.y + one->light.z);
-        return refined.corners(beam, end).measure * brightest / (refined.mean_light_ * plane.unit_area);
+        if (brightest == 0) return 0;
+        const double area = unit * unit * plane.unit_area;
+        return refined.corners(beam, end).measure * brightest / (refined.mean_light_ * area);
     }
 
-    /// Of what the part brings, how much its chords may put beside its place.
-    bool is_in_place(const Ends& end, const std::array<Vec2, 6>& at, double bulge) const {
+    /// Whether its chords put little of what the part brings beside its place.
+    static bool is_in_place(const std::array<Vec2, 6>& at, double bulge, double brightness) {
         const double area = std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
-        const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
-        return brightness(end) * std::min(area, bulge * side) <= kMisplaced * area;
+        return brightness * std::min(area, bulge * longest_side(at)) <= kMisplaced * area;
     }
 
     bool is_beyond(std::span<const Vec2> at, double room) const {
@@ -210,8 +217,7 @@ struct RefinedBeams::Visit {
     bool is_flat(const std::array<Vec2, 6>& at, double bulge) const {
         if (bulge > kStraight * unit) return false;
         const double all = cross_on_plane(at[1] - at[0], at[2] - at[0]);
-        const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
-        if (std::fabs(all) < kThin * unit * side) return true;
+        if (std::fabs(all) < kThin * unit * longest_side(at)) return true;
         const double quarter[4] = {
             cross_on_plane(at[5] - at[0], at[4] - at[0]), cross_on_plane(at[1] - at[5], at[3] - at[5]),
             cross_on_plane(at[3] - at[4], at[2] - at[4]), cross_on_plane(at[4] - at[3], at[5] - at[3])};
@@ -280,8 +286,9 @@ struct RefinedBeams::Visit {
         const std::array<Ends, 4> parts = quarters(end, by.middle);
         const std::array<std::array<Vec2, 3>, 4> on_plane{
             {{at[0], at[5], at[4]}, {at[5], at[1], at[3]}, {at[4], at[3], at[2]}, {at[3], at[4], at[5]}}};
-        const bool is_last = level + 1 >= kMostLevels || brightness(end) < kFaintPiece ||
-                             (is_flat(at, bulge) && is_in_place(end, at, bulge));
+        const double bright = brightness(end);
+        const bool is_last = level + 1 >= kMostLevels || bright < kFaintPiece ||
+                             (is_flat(at, bulge) && is_in_place(at, bulge, bright));
         for (std::size_t i = 0; i < 4; ++i) {
             if (is_last)
                 use_whole(parts[i], on_plane[i]);
@@ -307,8 +314,7 @@ void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double gu
                       plane.has_footprint ? 1 : kPointSize * space_.size,
                       plane.has_footprint ? 0.5 : 0};
     if (!whole) return visit.visit_half({end, division_[beam], kWholeBeam}, 0);
-    const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
-    visit.visit({end, division_[beam], kWholeBeam}, 0, std::max(guess, 0.5 * side));
+    visit.visit({end, division_[beam], kWholeBeam}, 0, std::max(guess, 0.5 * longest_side(at)));
 }
 
 void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const {

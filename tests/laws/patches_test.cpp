@@ -6,6 +6,7 @@
 #include "laws/agreement.h"
 #include "laws/worlds.h"
 #include "scene/data/patches.h"
+#include "support/bezier_patch.h"
 #include "support/draw.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"
@@ -14,15 +15,6 @@ using namespace trilens;
 using namespace trilens_test;
 
 namespace {
-
-BezierPatch bumpy_patch(std::uint64_t seed) {
-    Draw draw(seed);
-    BezierPatch patch;
-    for (std::size_t k = 0; k < 16; ++k)
-        patch[k] = Vec3(static_cast<double>(k % 4) - 1.5, static_cast<double>(k / 4) - 1.5, 0) +
-                   Vec3(draw.uniform(-0.2, 0.2), draw.uniform(-0.2, 0.2), draw.uniform(-0.3, 0.3));
-    return patch;
-}
 
 std::string patch_text(const BezierPatch& patch) {
     std::string text;
@@ -35,7 +27,7 @@ std::string patch_text(const BezierPatch& patch) {
 }  // namespace
 
 TEST_CASE("the limit surface of patches is their polynomial, derivatives and normals too", "[patches][law]") {
-    std::vector<BezierPatch> patches{bumpy_patch(1), bumpy_patch(2)};
+    std::vector<BezierPatch> patches{random_patch(1, 0.2, 0.3), random_patch(2, 0.2, 0.3)};
     for (Vec3& point : patches[1]) point += Vec3(5, 0, 0);
     SplineGrid grid{7, {}};
     Draw draw(3);
@@ -79,7 +71,7 @@ TEST_CASE("mirrors of patches show what Embree finds in their facets", "[patches
         "cameras": [{"name": "main", "yfov": 40, "lookAt": {"eye": [0.4, 0.3, 5], "at": [0, 0, 0]}}],
         "materials": [{"name": "chrome", "metallicFactor": 1, "roughnessFactor": 0}],
         "meshes": [{"name": "sheet", "role": "optic", "material": "chrome", "patches": [)" +
-                             patch_text(bumpy_patch(4)) + R"(]},
+                             patch_text(random_patch(4, 0.2, 0.3)) + R"(]},
             {"name": "box", "role": "object", "primitive": {"type": "box", "center": [0.5, 0.8, 4], "size": [1.5, 1, 0.6]}},
             {"name": "wall", "role": "object", "primitive": {"type": "plane", "center": [0, 0, 9], "normal": [0, 0, -1], "size": [9, 7]}}]})";
     const auto world = world_from("patches", json, 10);

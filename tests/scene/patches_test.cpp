@@ -7,6 +7,7 @@
 #include "scene/data/patches.h"
 #include "scene/info.h"
 #include "scene/scene_text.h"
+#include "support/bezier_patch.h"
 #include "support/draw.h"
 #include "support/test.h"
 
@@ -14,15 +15,6 @@ using namespace trilens;
 using namespace trilens_test;
 
 namespace {
-
-BezierPatch random_patch(std::uint64_t seed) {
-    Draw draw(seed);
-    BezierPatch patch;
-    for (std::size_t k = 0; k < 16; ++k)
-        patch[k] = Vec3(static_cast<double>(k % 4), static_cast<double>(k / 4), 0) +
-                   Vec3(draw.uniform(-0.4, 0.4), draw.uniform(-0.4, 0.4), draw.uniform(-1, 1));
-    return patch;
-}
 
 /// De Casteljau's construction.
 Vec3 on_curve(BezierCurve points, double t) {
@@ -63,12 +55,12 @@ std::string bezier_text(const BezierPatch& patch) {
 }  // namespace
 
 TEST_CASE("a Bezier patch is where de Casteljau's construction finds it", "[scene][patches]") {
-    const BezierPatch patch = random_patch(1);
+    const BezierPatch patch = random_patch(1, 0.4, 1);
     for (const Vec2& uv : kPlaces) CHECK(length(evaluate(patch, uv).position - on_patch(patch, uv)) < 1e-13);
 }
 
 TEST_CASE("derivatives and normals of a patch are those of small steps", "[scene][patches]") {
-    const BezierPatch patch = random_patch(2);
+    const BezierPatch patch = random_patch(2, 0.4, 1);
     const double h = 1e-4;
     const auto at = [&](double u, double v) { return on_patch(patch, Vec2(u, v)); };
     for (const Vec2& uv : kPlaces) {
@@ -86,7 +78,7 @@ TEST_CASE("derivatives and normals of a patch are those of small steps", "[scene
 }
 
 TEST_CASE("Bezier patches and B-splines turn into each other and back", "[scene][patches]") {
-    const BezierPatch patch = random_patch(3);
+    const BezierPatch patch = random_patch(3, 0.4, 1);
     const std::vector<BezierPatch> back = beziers_of(spline_of(patch));
     REQUIRE(back.size() == 1);
     for (std::size_t k = 0; k < 16; ++k) CHECK(length(back[0][k] - patch[k]) < 1e-13);
@@ -136,9 +128,9 @@ TEST_CASE("a Coons patch is the blend of its four curves everywhere", "[scene][p
 }
 
 TEST_CASE("objects of patches are polygons with the patch's normals", "[scene][patches]") {
-    BezierPatch cap = random_patch(6);
+    BezierPatch cap = random_patch(6, 0.4, 1);
     for (std::size_t k = 0; k < 4; ++k) cap[k] = Vec3(1.5, -1, 0);  // one edge is a point
-    const Scene scene = load_text(patch_scene(bezier_text(random_patch(7)) + ", " + bezier_text(cap),
+    const Scene scene = load_text(patch_scene(bezier_text(random_patch(7, 0.4, 1)) + ", " + bezier_text(cap),
                                               R"("role": "object", "resolution": 5)"));
     const Mesh& mesh = scene.meshes[0];
     CHECK(mesh.face_count == 2);
@@ -157,9 +149,9 @@ TEST_CASE("objects of patches are polygons with the patch's normals", "[scene][p
 }
 
 TEST_CASE("edges without a neighbour are counted, points are no edges", "[scene][patches]") {
-    const BezierPatch patch = random_patch(8);
+    const BezierPatch patch = random_patch(8, 0.4, 1);
     CHECK(count_open_edges({patch}) == 4);
-    BezierPatch beside = random_patch(9);
+    BezierPatch beside = random_patch(9, 0.4, 1);
     for (std::size_t j = 0; j < 4; ++j) beside[4 * j] = patch[4 * (3 - j) + 3];  // against it
     CHECK(count_open_edges({patch, beside}) == 6);
     beside[0] += Vec3(1e-3, 0, 0);
@@ -198,8 +190,9 @@ TEST_CASE("patches that cannot be are refused with their place", "[scene][patche
                                 [[0,0,0],[0,1,0],[0,2,0],[0,3,0]], [[3,0,0],[3,1,0],[3,2,0],[3,3,1]]]})"),
         "/meshes/0/patches/0/curves: the curves' ends do not agree: those along u end at [3,3,0], "
         "those along v at [3,3,1]"));
-    CHECK(contains(refusal(bezier_text(random_patch(1)), R"("role": "object", "subdivisionScheme": "loop")"),
-                   "/meshes/0/subdivisionScheme"));
-    CHECK(
-        contains(refusal(bezier_text(random_patch(1)), R"("role": "object", "file": "a.obj")"), "/meshes/0"));
+    CHECK(contains(
+        refusal(bezier_text(random_patch(1, 0.4, 1)), R"("role": "object", "subdivisionScheme": "loop")"),
+        "/meshes/0/subdivisionScheme"));
+    CHECK(contains(refusal(bezier_text(random_patch(1, 0.4, 1)), R"("role": "object", "file": "a.obj")"),
+                   "/meshes/0"));
 }
