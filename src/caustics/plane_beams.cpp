@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kPerLeaf = 4;
 /// Halvings of a beam's sides where its quadratic is wrong, and where there is none.
-constexpr int kMostHalvings = 5, kMostCuts = 2;
+constexpr int kMostHalvings = 5, kMostCuts = 4;
 /// A quadratic may be off by this share of the tolerance, and of a path that carries less than the brightest
 /// by so much more of it.
 constexpr double kMostOff = 0.25, kFaintOff = 0.05;
