@@ -83,8 +83,7 @@ const PlaneBeams* BeamLight::plane_beams(const Receiver& receiver) const {
         params.reach = kMostBent * params.tolerance;
         for (const BeamEnd& end : beams_.ends)
             params.brightest = std::max(params.brightest, end.light.x + end.light.y + end.light.z);
-        const Vec3 all = beams_.flux_arriving();
-        params.faint_light = kFaintShare * (all.x + all.y + all.z) / (space_.size * space_.size);
+        params.faint_light = kFaintShare * refined_->mean_light();
         return std::make_unique<PlaneBeams>(PlaneBeams::Source{beams_, tree_, *refined_}, face,
                                             is_back ? -face.normal : face.normal, params);
     });

@@ -18,7 +18,7 @@ constexpr double kThin = 0.1;
 /// A piece that would bring less than this share of the light's mean over the scene, if all of it came to the
 /// footprint, is not divided further.
 constexpr double kFaintPiece = 3e-4;
-/// Nor is one that would bring so much to the wrong side of its sides, in the same measure, if they are bent.
+/// One whose bent sides would put more than this beside its place, in the same measure, is.
 constexpr double kMisplaced = 3e-2;
 /// Rays between those at a part's ends and middles may lie so much farther out than they.
 constexpr double kWider = 1.5;
@@ -43,7 +43,6 @@ std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 
              {&middle[0], &middle[1], &middle[2]}}};
 }
 
-template <typename Make>
 std::shared_ptr<const BeamDivision> RecentDivisions::get(Id beam, std::uint32_t place, const Make& make) {
     const std::uint64_t key = std::uint64_t{beam} << 32 | place;
     Shard& shard = shard_[(key * 0x9e3779b97f4a7c15ULL) >> 58];  // Fibonacci hashing, to 64 shards

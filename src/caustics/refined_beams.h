@@ -26,8 +26,8 @@ struct BeamDivision {
 /// The divisions that were asked for last, some 2^17 of them; what is not there was forgotten. Thread-safe.
 class RecentDivisions {
   public:
-    /// `place`: which part of the beam, kWholeBeam or of place_of_part. `make(BeamDivision&)` fills it in.
-    template <typename Make>
+    using Make = std::function<void(BeamDivision&)>;
+    /// `place`: which part of the beam, kWholeBeam or of place_of_part. `make` fills in what is not known.
     std::shared_ptr<const BeamDivision> get(Id beam, std::uint32_t place, const Make& make);
 
   private:
@@ -64,6 +64,10 @@ class RefinedBeams {
     /// A part of a beam, with its part of the film.
     BeamCorners corners(Id beam, const BeamEnds& end) const;
 
+    /// The light that arrives at optics over the square of the scene's size: irradiance, the sum of its
+    /// colours.
+    double mean_light() const { return mean_light_; }
+
     using Use = UsePiece;
     /// The pieces of a beam that may come to the plane's footprint: bent by less than a hundredth of its
     /// side, or so small that it does not matter. `guess`: how far, in the plane's coordinates, a beam's rays
@@ -86,7 +90,7 @@ class RefinedBeams {
     LightSpace space_;
     BeamSource source_;
     const Beams* beams_ = nullptr;
-    double mean_light_ = 0;                           // sum of colours per world area
+    double mean_light_ = 0;
     std::vector<std::array<Id, 3>> side_;             // of each beam, across from its ends: of side_middle_
     std::vector<BeamEnd> side_middle_;                // neighbours share them
     std::unique_ptr<Lazy<BeamDivision>[]> division_;  // by beam

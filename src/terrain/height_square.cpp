@@ -60,4 +60,19 @@ bool HeightSquare::touches_missing(int x, int y) const {
     return false;
 }
 
+bool diagonal_falls(int x, int y, int half) {
+    return ((x - half) / (2 * half) + (y - half) / (2 * half)) % 2 == 0;
+}
+
+HalvedSide halved_side(int x, int y, int half) {
+    const bool odd_x = (x / half) % 2 != 0, odd_y = (y / half) % 2 != 0;
+    if (odd_x && odd_y) return {half, diagonal_falls(x, y, half) ? half : -half};
+    return odd_x ? HalvedSide{half, 0} : HalvedSide{0, half};
+}
+
+double bisection_detail(const HeightSquare& heights, int x, int y, int half) {
+    const auto [dx, dy] = halved_side(x, y, half);
+    return heights.at(x, y) - 0.5 * (heights.at(x - dx, y - dy) + heights.at(x + dx, y + dy));
+}
+
 }  // namespace trilens

@@ -44,4 +44,19 @@ class HeightSquare {
     std::vector<std::uint8_t> is_missing_;  // empty where none is
 };
 
+/// The triangulation's rule, of which samples are halves: the one at (x, y), at multiples of `half` of which
+/// at least one is odd, is the middle of a side from (x - dx, y - dy) to (x + dx, y + dy). The diagonals of
+/// squares go through the middle of the square around them.
+struct HalvedSide {
+    int dx = 0, dy = 0;
+};
+HalvedSide halved_side(int x, int y, int half);
+
+/// Whether the diagonal of the square around (x, y), `half` to each side, falls to the right; else it rises.
+bool diagonal_falls(int x, int y, int half);
+
+/// The height there less the mean of its side's ends: the coefficient of its hat among those of the bisected
+/// triangles.
+double bisection_detail(const HeightSquare& heights, int x, int y, int half);
+
 }  // namespace trilens

@@ -62,8 +62,7 @@ class QuadtreeWalk {
         if (is_outside(c)) return;
         const int h = c.half;
         if (!is_kept_(c.x, c.y)) {
-            const bool falls = ((c.x - h) / (2 * h) + (c.y - h) / (2 * h)) % 2 == 0;
-            whole({c.x - h, c.y - h}, {c.x + h, c.y + h}, falls);
+            whole({c.x - h, c.y - h}, {c.x + h, c.y + h}, diagonal_falls(c.x, c.y, h));
             return;
         }
         // The corners against the clock on the picture, so that fronts are upwards, and a quarter at each.

@@ -60,10 +60,10 @@ class Deviations {
         for (int m = heights.levels() - 1; m >= 0; --m) {
             const int half = 1 << m;
             for (int y = half; y < heights.side(); y += 2 * half)
-                for (int x = half; x < heights.side(); x += 2 * half) settle_middle(x, y, half);
+                for (int x = half; x < heights.side(); x += 2 * half) settle(x, y, half);
             for (int y = 0; y < heights.side(); y += half)
                 for (int x = (y / half) % 2 == 0 ? half : 0; x < heights.side(); x += 2 * half)
-                    (y / half) % 2 == 0 ? settle(x, y, half, 0) : settle(x, y, 0, half);
+                    settle(x, y, half);
         }
     }
 
@@ -82,17 +82,12 @@ class Deviations {
     }
 
   private:
-    void settle_middle(int x, int y, int half) {
-        const bool falls = ((x - half) / (2 * half) + (y - half) / (2 * half)) % 2 == 0;
-        settle(x, y, half, falls ? half : -half);
-    }
-    void settle(int x, int y, int dx, int dy) {
+    void settle(int x, int y, int half) {
         if (is_kept_(x, y)) return;
-        const auto sum = [&](const auto& of) { return 0.5 * (of(x - dx, y - dy) + of(x + dx, y + dy)); };
-        const double detail = heights_.at(x, y) - sum([&](int i, int j) { return heights_.at(i, j); });
-        const double around =
-            sum([&](int i, int j) { return static_cast<double>(off_[heights_.index(i, j)]); });
-        off_[heights_.index(x, y)] = static_cast<float>(detail + around);
+        const auto [dx, dy] = halved_side(x, y, half);
+        const auto off = [&](int i, int j) { return static_cast<double>(off_[heights_.index(i, j)]); };
+        off_[heights_.index(x, y)] = static_cast<float>(bisection_detail(heights_, x, y, half) +
+                                                        0.5 * (off(x - dx, y - dy) + off(x + dx, y + dy)));
     }
 
     const HeightSquare& heights_;

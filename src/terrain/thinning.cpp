@@ -45,19 +45,6 @@ bool reaches_grid(const HeightSquare& heights, int x, int y, int reach) {
     return x - reach < heights.last_column() && y - reach < heights.last_row();
 }
 
-/// The vertex that halves a triangle's longest side less the mean of the side's ends: the coefficient of its
-/// hat among those of the bisected triangles.
-double bisection_detail(const HeightSquare& heights, int x, int y, int half) {
-    const bool odd_x = (x / half) % 2 != 0, odd_y = (y / half) % 2 != 0;
-    const double value = heights.at(x, y);
-    if (odd_x && !odd_y) return value - 0.5 * (heights.at(x - half, y) + heights.at(x + half, y));
-    if (odd_y && !odd_x) return value - 0.5 * (heights.at(x, y - half) + heights.at(x, y + half));
-    // The middle of a square: its diagonal goes through the middle of the square around it.
-    const bool falls = ((x - half) / (2 * half) + (y - half) / (2 * half)) % 2 == 0;
-    const int rise = falls ? half : -half;
-    return value - 0.5 * (heights.at(x - half, y - rise) + heights.at(x + half, y + rise));
-}
-
 }  // namespace
 
 /// The detail signals of one rule: what the samples 2^m apart say beyond those 2^(m+1) apart.

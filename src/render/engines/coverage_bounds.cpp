@@ -16,6 +16,11 @@ constexpr int kCellsAcross = 1 << kLevels;
 /// Stands for any of several optics.
 constexpr Id kSomeOptic = kNone - 1;
 
+/// Whether the pixel from this place on is in the window.
+bool holds_pixel(const SampleGrid& window, const Vec2& at) {
+    return at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
+}
+
 /// How a square lies to a facet on the screen.
 struct OnFacet {
     bool touches = false, lies_in = false;
@@ -134,10 +139,8 @@ class CoverageBounder::Pixel {
 
 CoverageBounder::Pixel::Pixel(const CoverageBounder& of, const Vec2& at, Id shown)
     : of_(of), at_(at), shown_(shown) {
-    const auto in = [&](const SampleGrid& window) {
-        return at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
-    };
-    mixes_optics_ = std::count_if(of.windows_.begin(), of.windows_.end(), in) > 1;
+    mixes_optics_ = std::count_if(of.windows_.begin(), of.windows_.end(),
+                                  [&](const SampleGrid& window) { return holds_pixel(window, at); }) > 1;
     for (std::size_t i = 0; i < of.windows_.size(); ++i)
         is_optic_ = is_optic_ || of.world_.optics[i].mesh == shown;
     if (is_optic_ && mixes_optics_) shown_ = kSomeOptic;
@@ -156,8 +159,7 @@ void CoverageBounder::Pixel::add_facet(const CameraFacet& facet) {
             prepared_objects(world), facet.rays.centre, rays,
             [&](Id triangle) { return world.objects.object[triangle]; }, part.triangles[0]);
         for (std::size_t i = 0; i < of_.windows_.size(); ++i) {
-            const SampleGrid& window = of_.windows_[i];
-            if (at_.x < window.x0 || at_.x >= window.x1 || at_.y < window.y0 || at_.y >= window.y1) continue;
+            if (!holds_pixel(of_.windows_[i], at_)) continue;
             const Id mesh = mixes_optics_ ? kSomeOptic : world.optics[i].mesh;
             collect_triangles(
                 of_.frame_.optics[i].facets->prepared(), facet.rays.centre, rays, [&](Id) { return mesh; },

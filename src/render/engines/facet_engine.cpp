@@ -180,8 +180,7 @@ void FacetViewer::meet_optic(std::size_t index, const Hit& hit, std::size_t samp
     }
     if (sees_object && touches(hit.t, view.depth) && leaves_body(index, hit, view.ray)) return;
     if (sees_optic || sees_object) {
-        const Id other =
-            sees_optic ? world_.optics[view.optic].mesh : world_.objects.object[view.hit.triangle];
+        const Id other = shown_mesh(world_, view);
         if (sees_optic && touches(hit.t, view.depth)) {
             if (!comes_first(index, hit, views, view)) return;
         } else if (!comes_before(hit.t, world_.optics[index].mesh, view.depth, other)) {

@@ -179,48 +179,50 @@ Box patch_bounds(const Cage& cage) {
     return box;
 }
 
+namespace {
+
+/// A place of a patch's lattice.
+struct PatchCorner {
+    int point = 0;  // of the mesh
+    Vec3 normal{0};
+    Vec2 uv{0};
+};
+
+/// The quad; a triangle where two neighbours are one place; nothing where less is left.
+void add_quad(const std::array<PatchCorner, 4>& ring, double tolerance, PolygonMesh& mesh) {
+    const auto place = [&](std::size_t k) {
+        return mesh.cage.points[static_cast<std::size_t>(ring[k].point)];
+    };
+    std::vector<PatchCorner> face;
+    for (std::size_t k = 0; k < 4; ++k)
+        if (length(place(k) - place((k + 1) % 4)) > tolerance) face.push_back(ring[k]);
+    if (face.size() < 3) return;
+    mesh.cage.face_vertex_counts.push_back(static_cast<int>(face.size()));
+    for (const PatchCorner& corner : face) {
+        mesh.cage.face_vertex_indices.push_back(corner.point);
+        mesh.normals.push_back(corner.normal);
+        mesh.uvs.push_back(corner.uv);
+    }
+}
+
+}  // namespace
+
 PolygonMesh patch_polygons(const std::vector<BezierPatch>& patches, int n) {
     TRILENS_CHECK(n >= 1, "a patch has a quad");
     PolygonMesh mesh;
     const double tolerance = kSameControl * size_of(patches);
     for (const BezierPatch& patch : patches) {
-        const auto first = static_cast<int>(mesh.cage.points.size());
-        std::vector<Vec3> normals;
-        const auto uv_of = [&](int i, int j) {
-            return Vec2(static_cast<double>(i) / n, static_cast<double>(j) / n);
-        };
+        std::vector<PatchCorner> lattice;
         for (int j = 0; j <= n; ++j)
             for (int i = 0; i <= n; ++i) {
-                mesh.cage.points.push_back(evaluate(patch, uv_of(i, j)).position);
-                normals.push_back(normal_near(patch, uv_of(i, j)));
+                const Vec2 uv(static_cast<double>(i) / n, static_cast<double>(j) / n);
+                lattice.push_back({static_cast<int>(mesh.cage.points.size()), normal_near(patch, uv), uv});
+                mesh.cage.points.push_back(evaluate(patch, uv).position);
             }
-        const auto at = [&](int i, int j) { return j * (n + 1) + i; };
+        const auto at = [&](int i, int j) { return lattice[static_cast<std::size_t>(j * (n + 1) + i)]; };
         for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) {
-                int corners = 0;
-                const std::array<std::array<int, 2>, 4> ring{
-                    {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
-                const auto place = [&](std::size_t k) {
-                    return mesh.cage.points[static_cast<std::size_t>(first + at(ring[k][0], ring[k][1]))];
-                };
-                for (std::size_t k = 0; k < 4; ++k) {
-                    if (length(place(k) - place((k + 1) % 4)) <= tolerance) continue;
-                    const int corner = at(ring[k][0], ring[k][1]);
-                    mesh.cage.face_vertex_indices.push_back(first + corner);
-                    mesh.normals.push_back(normals[static_cast<std::size_t>(corner)]);
-                    mesh.uvs.push_back(uv_of(ring[k][0], ring[k][1]));
-                    ++corners;
-                }
-                if (corners >= 3) {
-                    mesh.cage.face_vertex_counts.push_back(corners);
-                    continue;
-                }
-                for (; corners > 0; --corners) {
-                    mesh.cage.face_vertex_indices.pop_back();
-                    mesh.normals.pop_back();
-                    mesh.uvs.pop_back();
-                }
-            }
+            for (int i = 0; i < n; ++i)
+                add_quad({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, tolerance, mesh);
     }
     return mesh;
 }
