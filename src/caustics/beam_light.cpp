@@ -25,22 +25,6 @@ constexpr double kSmallFace = 0.004;
 /// closely.
 constexpr double kFaintShare = 0.05;
 
-/// What the rays at a beam's ends say about the way to a plane.
-enum class Way { kFree, kStopped, kUnknown };
-
-Way way_to(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double same_place) {
-    int free = 0, stopped = 0;
-    for (const Id e : beam.end) {
-        const BeamEnd& end = beams.ends[e];
-        const double fall = -dot(end.direction, plane.normal);
-        const double t = dot(end.origin - plane.point, plane.normal) / fall;
-        if (!(fall > 0)) return Way::kUnknown;
-        if (std::fabs(end.object - t) <= same_place / fall) ++free;
-        if (end.optic < t) ++stopped;
-    }
-    return free == 3 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
-}
-
 }  // namespace
 
 BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
@@ -84,6 +68,7 @@ const PlaneBeams* BeamLight::plane_beams(const Receiver& receiver) const {
         for (const BeamEnd& end : beams_.ends)
             params.brightest = std::max(params.brightest, end.light.x + end.light.y + end.light.z);
         params.faint_light = kFaintShare * refined_->mean_light();
+        params.same_place = kSamePlace * space_.size;
         return std::make_unique<PlaneBeams>(PlaneBeams::Source{beams_, tree_, *refined_}, face,
                                             is_back ? -face.normal : face.normal, params);
     });
@@ -130,21 +115,20 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& rece
 template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
-    const double same_place = kSamePlace * space_.size;
-    const auto use_piece = [&](Id index, const BeamCorners& corners, const FallenBeam& fallen) {
-        const LightBeam& beam = beams_.beams[index];
-        Way way = way_to(beams_, beam, plane, same_place);
-        if (way == Way::kStopped) return;
-        if (receiver.exact) way = Way::kUnknown;
-        if (const auto light = light_of({beam, corners, fallen, plane, way}, receiver)) use(*light);
+    const auto use_piece = [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
+        if (const auto light = light_of({beams_.beams[index], corners, fallen, plane, way}, receiver))
+            use(*light);
     };
     if (!receiver.exact)
         if (const PlaneBeams* fallen = plane_beams(receiver)) return fallen->for_each_piece(plane, use_piece);
     const double bent = kMostBent * tolerance_ * space_.size;
     const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
     tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? bent : 0), [&](Id index) {
+        Way way = way_to(beams_, beams_.beams[index], plane, kSamePlace * space_.size);
+        if (way == Way::kStopped) return;
+        if (receiver.exact) way = Way::kUnknown;
         const auto use_one = [&](const BeamCorners& corners, const FallenBeam& fallen) {
-            use_piece(index, corners, fallen);
+            use_piece(index, way, corners, fallen);
         };
         if (receiver.exact)
             refined_->for_each_piece(index, plane, guess, use_one);

@@ -40,14 +40,18 @@ double bulge_on_plane(const std::array<Vec2, 6>& at) {
     return bulge;
 }
 
-Vec3 CurvedBeam::mean_light(int sides) const {
+std::array<Vec3, 6> CurvedBeam::lights() const {
+    std::array<Vec3, 6> light;
+    for (std::size_t k = 0; k < 3; ++k) light[k] = corners.end[k]->light, light[3 + k] = middle[k]->light;
+    return light;
+}
+
+Vec3 mean_light(const std::array<Vec3, 6>& light, int sides) {
     const PieceGrid& grid = PieceGrid::of(sides);
     Vec3 sum(0);
     for (std::size_t p = 0; p < grid.pieces; ++p)
         for (const std::size_t n : grid.piece[p])
-            for (std::size_t c = 0; c < 3; ++c)
-                sum += grid.quadratic[n][c] * corners.end[c]->light +
-                       grid.quadratic[n][3 + c] * middle[c]->light;
+            for (std::size_t c = 0; c < 6; ++c) sum += grid.quadratic[n][c] * light[c];
     return sum / (3.0 * static_cast<double>(grid.pieces));
 }
 

@@ -10,6 +10,12 @@
 namespace trilens {
 
 using BeamEnds = std::array<const BeamEnd*, 3>;
+
+/// A beam on a plane: of its ends and then of the middles of its sides.
+struct FallenCurve {
+    std::array<Vec2, 6> at{};  // in the plane's coordinates
+    std::array<Vec3, 6> light{};
+};
 using UsePiece = std::function<void(const BeamCorners&, const FallenBeam&)>;
 
 /// A beam, or a part of one, with the exact rays at the middles of its sides, across from its ends.
@@ -21,14 +27,17 @@ struct CurvedBeam {
     /// plane lies so askew that a quadratic says nothing.
     std::optional<std::array<Vec2, 6>> fall(const ReceiverPlane& plane) const;
 
-    /// Calls use for those of its sides x sides flat pieces that come to the square [-half, half]^2. `at`: as
-    /// fall() has it, in any coordinates. `sides`: 1, 2 or 4.
-    template <typename Use>
-    void for_each_piece(const std::array<Vec2, 6>& at, double half, int sides, const Use& use) const;
+    std::array<Vec3, 6> lights() const;
 
-    /// The mean of the light that the pieces have.
-    Vec3 mean_light(int sides) const;
+    /// Calls use(corners, fallen) for those of its sides x sides flat pieces that come to the square [-half,
+    /// half]^2; places on the window are told of points only, where half is 0. `curve`: as fall() and
+    /// lights() have it, in any coordinates. `sides`: 1, 2 or 4.
+    template <typename Use>
+    void for_each_piece(const FallenCurve& curve, double half, int sides, const Use& use) const;
 };
+
+/// The mean of the light that sides x sides pieces have.
+Vec3 mean_light(const std::array<Vec3, 6>& light, int sides);
 
 /// How far the farthest middle lies from that of its chord.
 double bulge_on_plane(const std::array<Vec2, 6>& at);
@@ -50,6 +59,12 @@ bool is_beyond(const std::array<Vec2, kCount>& at, double half, double room) {
     return false;
 }
 
+/// Which of the square's sides the point lies beyond, a bit each (Cohen and Sutherland's outcode).
+inline unsigned sides_beyond(const Vec2& at, double half) {
+    return static_cast<unsigned>(at.x > half) | static_cast<unsigned>(at.x < -half) << 1 |
+           static_cast<unsigned>(at.y > half) << 2 | static_cast<unsigned>(at.y < -half) << 3;
+}
+
 /// The pieces of a curved beam, and their corners, row by row from the third corner's side.
 struct PieceGrid {
     static constexpr int kMostSides = 4;
@@ -64,27 +79,30 @@ struct PieceGrid {
 };
 
 template <typename Use>
-void CurvedBeam::for_each_piece(const std::array<Vec2, 6>& at, double half, int sides, const Use& use) const {
+void CurvedBeam::for_each_piece(const FallenCurve& curve, double half, int sides, const Use& use) const {
+    const std::array<Vec2, 6>& at = curve.at;
     if (is_beyond(at, half, bulge_on_plane(at))) return;
     const PieceGrid& grid = PieceGrid::of(sides);
     std::array<Vec2, PieceGrid::kMostCorners> corner;
+    std::array<unsigned, PieceGrid::kMostCorners> beyond;
     for (std::size_t n = 0; n < grid.corners; ++n) {
         corner[n] = Vec2(0);
         for (std::size_t k = 0; k < 6; ++k) corner[n] += grid.quadratic[n][k] * at[k];
+        beyond[n] = sides_beyond(corner[n], half);
     }
     for (std::size_t p = 0; p < grid.pieces; ++p) {
+        const std::array<std::size_t, 3>& ends = grid.piece[p];
+        if ((beyond[ends[0]] & beyond[ends[1]] & beyond[ends[2]]) != 0) continue;
         FallenBeam fallen;
-        for (std::size_t k = 0; k < 3; ++k) fallen.at[k] = corner[grid.piece[p][k]];
-        if (is_beyond(fallen.at, half, 0)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t n = grid.piece[p][k];
+            const std::size_t n = ends[k];
+            fallen.at[k] = corner[n];
             const Vec3& w = fallen.weights[k] = grid.weights[n];
-            const std::array<double, 6>& q = grid.quadratic[n];
             fallen.light[k] = Vec3(0);
-            for (std::size_t c = 0; c < 3; ++c)
-                fallen.light[k] += q[c] * corners.end[c]->light + q[3 + c] * middle[c]->light;
-            fallen.place[k] =
-                w.x * corners.end[0]->place + w.y * corners.end[1]->place + w.z * corners.end[2]->place;
+            for (std::size_t c = 0; c < 6; ++c) fallen.light[k] += grid.quadratic[n][c] * curve.light[c];
+            if (half == 0)
+                fallen.place[k] =
+                    w.x * corners.end[0]->place + w.y * corners.end[1]->place + w.z * corners.end[2]->place;
         }
         fallen.measure = corners.measure / static_cast<double>(grid.pieces);
         use(corners, fallen);

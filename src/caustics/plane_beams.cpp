@@ -22,8 +22,8 @@ constexpr double kNearlyStraight = 6;
 constexpr double kOneBends = 0.02, kOneDiffers = 0.03;
 constexpr double kFourBend = 0.08, kFourDiffer = 0.12;
 
-double strength_of(const BeamEnd& end) {
-    return end.light.x + end.light.y + end.light.z;
+double sum_of(const Vec3& light) {
+    return light.x + light.y + light.z;
 }
 
 /// Of a side's quarter points and of an inner side's middle: weights of the three ends.
@@ -53,6 +53,19 @@ ReceiverPlane plane_of(const ReceiverFace& face, const Vec3& normal) {
 
 }  // namespace
 
+Way way_to(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double same_place) {
+    int free = 0, stopped = 0;
+    for (const Id e : beam.end) {
+        const BeamEnd& end = beams.ends[e];
+        const double fall = -dot(end.direction, plane.normal);
+        const double t = dot(end.origin - plane.point, plane.normal) / fall;
+        if (!(fall > 0)) return Way::kUnknown;
+        if (std::fabs(end.object - t) <= same_place / fall) ++free;
+        if (end.optic < t) ++stopped;
+    }
+    return free == 3 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
+}
+
 /// Of one beam: what it becomes.
 struct PlaneBeams::Maker {
     const Source& source;
@@ -60,6 +73,7 @@ struct PlaneBeams::Maker {
     const PlaneBeamsParams& params;
     double half;  // of the square around the face
     Id index;
+    Way way;
     std::vector<Curved> curved;
     std::vector<Flat> flat;
 
@@ -78,23 +92,25 @@ struct PlaneBeams::Maker {
         const double room = room_of(beam, *at);
         if (bulge > kNearlyStraight * room && level < kMostHalvings && is_off(end, by, *at, room))
             return add_parts(end, by, level);
-        const int sides = sides_of(beam, *at, bulge);
-        curved.push_back({beam, *at, index, sides, beam.mean_light(sides)});
+        add_curved(beam, *at, bulge);
     }
 
     /// How far it may be off.
     double room_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at) const {
         double strength = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            strength = std::max({strength, strength_of(*beam.corners.end[k]), strength_of(*beam.middle[k])});
+            strength =
+                std::max({strength, sum_of(beam.corners.end[k]->light), sum_of(beam.middle[k]->light)});
         const double area = 0.5 * std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
         if (strength * beam.corners.measure < params.faint_light * area) return INFINITY;
         return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength);
     }
 
-    int sides_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double bulge) const {
+    /// How much its quarters' areas differ from a quarter, and its light from linear, as shares.
+    static double unevenness(const FallenCurve& curve) {
+        const auto& at = curve.at;
         const double all = cross_on_plane(at[1] - at[0], at[2] - at[0]);
-        double most = 0;  // difference
+        double most = 0;
         const std::size_t quarter[4][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}, {3, 4, 5}};
         for (const auto& q : quarter) {
             const double area = cross_on_plane(at[q[1]] - at[q[0]], at[q[2]] - at[q[0]]);
@@ -102,13 +118,24 @@ struct PlaneBeams::Maker {
         }
         double brightest = 0, bends = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            const double a = strength_of(*beam.corners.end[(k + 1) % 3]),
-                         b = strength_of(*beam.corners.end[(k + 2) % 3]), m = strength_of(*beam.middle[k]);
+            const double a = sum_of(curve.light[(k + 1) % 3]), b = sum_of(curve.light[(k + 2) % 3]),
+                         m = sum_of(curve.light[3 + k]);
             brightest = std::max({brightest, a, m}), bends = std::max(bends, std::fabs(m - 0.5 * (a + b)));
         }
-        if (brightest > 0) most = std::max(most, bends / brightest);
-        if (bulge <= kOneBends * params.tolerance && most <= kOneDiffers) return 1;
-        return bulge <= kFourBend * params.tolerance && most <= kFourDiffer ? 2 : 4;
+        return brightest > 0 ? std::max(most, bends / brightest) : most;
+    }
+
+    int sides_of(const FallenCurve& curve, double bulge) const {
+        const double uneven = unevenness(curve);
+        if (bulge <= kOneBends * params.tolerance && uneven <= kOneDiffers) return 1;
+        return bulge <= kFourBend * params.tolerance && uneven <= kFourDiffer ? 2 : 4;
+    }
+
+    void add_curved(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double bulge) {
+        Curved one{beam, {at, beam.lights()}, index, way};
+        one.sides = sides_of(one.curve, bulge);
+        one.mean_light = mean_light(one.curve.light, one.sides);
+        curved.push_back(one);
     }
 
     void add_parts(const BeamEnds& end, const BeamDivision& by, int level) {
@@ -127,7 +154,7 @@ struct PlaneBeams::Maker {
     void add_flat(const BeamCorners& corners) {
         const FallenBeams fallen = fall(corners, plane, half);
         for (std::size_t i = 0; i < fallen.count; ++i)
-            if (!is_beyond(fallen.part[i].at, half, 0)) flat.push_back({corners, fallen.part[i], index});
+            if (!is_beyond(fallen.part[i].at, half, 0)) flat.push_back({corners, fallen.part[i], index, way});
     }
 
     bool is_off(const BeamEnds& end, const BeamDivision& by, const std::array<Vec2, 6>& at,
@@ -154,12 +181,14 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
     std::vector<Id> near;
     source.tree.for_each_near(face.center, face.radius + params.reach,
                               [&](Id beam) { near.push_back(beam); });
-    std::vector<Maker> made(near.size(),
-                            Maker{source, plane_, params, face.radius + params.reach, kNone, {}, {}});
+    const Maker none{source, plane_, params, face.radius + params.reach, kNone, Way::kUnknown, {}, {}};
+    std::vector<Maker> made(near.size(), none);
     parallel_for(near.size(), 32, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
+            const LightBeam& beam = source.beams.beams[near[i]];
             made[i].index = near[i];
-            made[i].add(corners_of(source.beams, source.beams.beams[near[i]]).end, nullptr, 0);
+            made[i].way = way_to(source.beams, beam, plane_, params.same_place);
+            if (made[i].way != Way::kStopped) made[i].add(corners_of(source.beams, beam).end, nullptr, 0);
         }
     });
     for (const Maker& one : made) {
@@ -182,7 +211,7 @@ PlaneBeams::Box2 PlaneBeams::hull_box(const std::array<Vec2, 6>& at) {
 }
 
 PlaneBeams::Box2 PlaneBeams::box_of(std::uint32_t entry) const {
-    if (entry < curved_.size()) return hull_box(curved_[entry].at);
+    if (entry < curved_.size()) return hull_box(curved_[entry].curve.at);
     Box2 box;
     for (const Vec2& at : flat_[entry - curved_.size()].fallen.at) box.include(at);
     return box;

@@ -13,12 +13,18 @@
 
 namespace trilens {
 
+/// What the rays at a beam's ends say about the way to a plane.
+enum class Way { kFree, kStopped, kUnknown };
+/// `same_place`: world units.
+Way way_to(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double same_place);
+
 /// How far light may fall from its place.
 struct PlaneBeamsParams {
     double tolerance = 0;    // world units
     double reach = 0;        // beyond the face, world units
     double brightest = 0;    // path of the light: the sum of its colours
     double faint_light = 0;  // irradiance, the sum of its colours, that is not looked at closely
+    double same_place = 0;   // world units
 };
 
 /// The beams that come to one side of a face, as curved beams in the plane's own coordinates: divided by
@@ -34,15 +40,17 @@ class PlaneBeams {
     PlaneBeams(const Source& source, const ReceiverFace& face, const Vec3& normal,
                const PlaneBeamsParams& params);
 
-    /// Calls use(beam, corners, fallen) for every piece that may come to the footprint.
+    /// Calls use(beam, way, corners, fallen) for every piece that may come to the footprint; of beams that
+    /// are stopped on their way for none.
     template <typename Use>
     void for_each_piece(const ReceiverPlane& footprint, const Use& use) const;
 
   private:
     struct Curved {
         CurvedBeam beam;
-        std::array<Vec2, 6> at{};
+        FallenCurve curve;
         Id index = kNone;
+        Way way = Way::kUnknown;
         int sides = 4;  // of its pieces
         Vec3 mean_light{0};
     };
@@ -50,6 +58,7 @@ class PlaneBeams {
         BeamCorners corners;
         FallenBeam fallen;
         Id index = kNone;
+        Way way = Way::kUnknown;
     };
     struct Box2 {
         Vec2 low{INFINITY}, high{-INFINITY};
@@ -115,30 +124,28 @@ void PlaneBeams::for_each_piece(const ReceiverPlane& footprint, const Use& use) 
 
 template <typename Use>
 void PlaneBeams::use_curved(const Curved& one, const Map& map, double half, const Use& use) {
-    std::array<Vec2, 6> at;
-    for (std::size_t k = 0; k < 6; ++k) at[k] = map(one.at[k]);
-    const Box2 box = hull_box(at);
+    FallenCurve curve = one.curve;
+    for (Vec2& at : curve.at) at = map(at);
+    const Box2 box = hull_box(curve.at);
     const bool is_inside = std::max({-box.low.x, -box.low.y, box.high.x, box.high.y}) <= half;
     if (!is_inside) {
-        one.beam.for_each_piece(
-            at, half, one.sides,
-            [&](const BeamCorners& corners, const FallenBeam& fallen) { use(one.index, corners, fallen); });
+        one.beam.for_each_piece(curve, half, one.sides,
+                                [&](const BeamCorners& corners, const FallenBeam& fallen) {
+                                    use(one.index, one.way, corners, fallen);
+                                });
         return;
     }
     FallenBeam whole;
     whole.measure = one.beam.corners.measure;
-    for (std::size_t k = 0; k < 3; ++k) {
-        whole.at[k] = at[k], whole.light[k] = one.mean_light;
-        whole.place[k] = one.beam.corners.end[k]->place;
-    }
-    use(one.index, one.beam.corners, whole);
+    for (std::size_t k = 0; k < 3; ++k) whole.at[k] = curve.at[k], whole.light[k] = one.mean_light;
+    use(one.index, one.way, one.beam.corners, whole);
 }
 
 template <typename Use>
 void PlaneBeams::use_flat(const Flat& one, const Map& map, double half, const Use& use) {
     FallenBeam fallen = one.fallen;
     for (Vec2& at : fallen.at) at = map(at);
-    if (!is_beyond(fallen.at, half, 0)) use(one.index, one.corners, fallen);
+    if (!is_beyond(fallen.at, half, 0)) use(one.index, one.way, one.corners, fallen);
 }
 
 }  // namespace trilens

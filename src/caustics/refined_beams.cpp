@@ -321,7 +321,9 @@ void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, co
     const std::array<BeamEnd, 3>& middle = middles(beam);
     const CurvedBeam curved{corners, {&middle[0], &middle[1], &middle[2]}};
     const std::optional<std::array<Vec2, 6>> at = curved.fall(plane);
-    if (at) return curved.for_each_piece(*at, plane.has_footprint ? 0.5 : 0, PieceGrid::kMostSides, use);
+    if (at)
+        return curved.for_each_piece({*at, curved.lights()}, plane.has_footprint ? 0.5 : 0,
+                                     PieceGrid::kMostSides, use);
     const FallenBeams fallen = fall(corners, plane);
     for (std::size_t i = 0; i < fallen.count; ++i) use(corners, fallen.part[i]);
 }
