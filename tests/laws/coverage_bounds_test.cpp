@@ -123,8 +123,11 @@ TEST_CASE("the layer of coverage has its interval at every pixel, and none where
     const auto world = shipped_world("sphere", 8, 32, 24);
     PictureRequest request;
     request.layers.layers = {"optic", "position", "coverage"};
+    std::string warned;
     const auto open = [&] {
-        const Image image = draw_picture(*world, request, {}, ignore).image;
+        warned.clear();
+        const Image image =
+            draw_picture(*world, request, {}, [&](const std::string& what) { warned += what; }).image;
         const auto &least = image.find("coverage.min")->floats(),
                    &most = image.find("coverage.max")->floats();
         const auto &mesh = image.find("coverage.object")->ids(), &optic = image.find("optic.object")->ids(),
@@ -137,8 +140,10 @@ TEST_CASE("the layer of coverage has its interval at every pixel, and none where
         return silent;
     };
     CHECK(open() == 0);
+    CHECK(warned.find("coverage") == std::string::npos);
     request.frame.max_error = 0.5;
     CHECK(open() == 32 * 24);
+    CHECK(warned.find("coverage says nothing of 768 pixels") != std::string::npos);
     request.frame.max_error = std::nullopt;
     request.engine = Engine::kLimitTruth;
     CHECK(open() == 32 * 24);

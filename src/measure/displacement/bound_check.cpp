@@ -29,15 +29,18 @@ bool is_one_piece(const PositionField& field, int column, int row) {
 std::optional<BoundCheck> check_bounds(const Image& reference, const Image& test, const std::string& layer,
                                        const Displacement& displacement) {
     const Channel* const bound = test.find(kBoundChannel);
-    const std::optional<PositionField> field = make_seen_field(reference, layer);
+    std::optional<PositionField> field = make_seen_field(reference, layer);
     if (!bound || !field || displacement.state.empty()) return std::nullopt;
+    link_neighbours(*field);
+    const std::vector<std::uint8_t> is_near_fold = near_folds(*field);
     BoundCheck check;
     std::vector<double> ratios;
     for (int row = 0; row < field->height; ++row)
         for (int column = 0; column < field->width; ++column) {
             const std::size_t i = field->index(column, row);
             const double proven = double{bound->floats()[i]};
-            if (!(proven > 0) || displacement.state[i] != Shift::kFound || !is_one_piece(*field, column, row))
+            if (!(proven > 0) || displacement.state[i] != Shift::kFound || is_near_fold[i] ||
+                !is_one_piece(*field, column, row))
                 continue;
             const double shift = std::hypot(double{displacement.shift_x[i]}, double{displacement.shift_y[i]});
             ++check.pixels;

@@ -89,7 +89,7 @@ Frame make_frame(const World& world, CameraRays camera, const FrameParams& param
     frame.camera_media = camera_media_of(world, frame.camera);
     frame.max_error = params.max_error.value_or(world.scene.render.max_error);
     frame.facets = params.facets;
-    frame.certify = params.certify;
+    frame.certify = params.certify || world.scene.render.certify;
     if (frame.certify && !(frame.max_error > 0))
         throw UsageError("what is to be proven is an error of more than 0 pixels: say which (max-error)");
     check_facet_count(world, params.resolution);

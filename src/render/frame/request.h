@@ -38,6 +38,7 @@ struct FrameParams {
     std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
     FacetUse facets = FacetUse::kAll;
     // What mirrors show is proven to be off by no more than max_error, which is above 0; what is not, traced.
+    // Also where RenderSettings::certify says so.
     bool certify = false;
 
     bool operator==(const FrameParams&) const = default;
@@ -145,6 +146,8 @@ struct LayerStatistics {
     // bounds.
     std::size_t certified_pixels = 0;
     double certified_error = 0;
+    // Of the layer "coverage", where it is drawn: pixels of which nothing is said.
+    std::size_t unbounded_pixels = 0;
     double outline_pixels = 0;  // predicted: that lie between the outlines of optics and of their facets
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
     // paths that would go on to another optic after the last that is followed.

@@ -231,6 +231,7 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
     to.predicted_error = std::max(to.predicted_error, from.predicted_error);
     to.certified_pixels += from.certified_pixels;
     to.certified_error = std::max(to.certified_error, from.certified_error);
+    to.unbounded_pixels += from.unbounded_pixels;
     to.outline_pixels += from.outline_pixels;
     to.deep_light = std::max(to.deep_light, from.deep_light);
     to.deep_pixels += from.deep_pixels;
@@ -258,7 +259,12 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
         counts.rays_by_sample = band.fragments->counts().by_sample;
         counts.pixels_shaded_by_sample = band.fragments->counts().pixels_by_sample;
     }
-    if (source.bounds_coverage) canvas.put_coverage(band.shown, band.coverage, first);
+    if (source.bounds_coverage) {
+        canvas.put_coverage(band.shown, band.coverage, first);
+        counts.unbounded_pixels = static_cast<std::size_t>(
+            std::count_if(band.coverage.begin(), band.coverage.end(),
+                          [](const CoverageBounds& one) { return one.low <= 0 && one.high >= 1; }));
+    }
     std::mutex mutex;
     parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
         LayerStatistics own;

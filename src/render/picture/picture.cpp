@@ -46,6 +46,12 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
             fmt::format("{} pixels see a facet without rays (total internal reflection at a corner, or no "
                         "normal); that path is black there",
                         statistics.pixels_without_ray));
+    if (statistics.unbounded_pixels > 0)
+        warn(fmt::format(
+            "the layer coverage says nothing of {} pixels (0 and 1): it is about facets, so not with "
+            "max-error, the classic engine or exact surfaces, nor which of several optics is seen "
+            "where the rectangles around them overlap",
+            statistics.unbounded_pixels));
 }
 
 /// What is drawn by another way than was asked for.

@@ -136,6 +136,7 @@ struct RenderSettings {
     bool direct = true, reflect = true, refract = true;
     bool fresnel = true;
     double max_error = 0;  // pixels of displacement that facets are divided for; 0: only where they lie
+    bool certify = false;  // mirrors' facets are held to max_error by proof, which is then above 0
 };
 
 /// A file as it was when it was read.

@@ -253,8 +253,9 @@ std::string scene_digest(const Scene& scene) {
     add(meshes, digest);
     add(lights, digest);
     add(volumes, digest);
-    const auto& [max_depth, direct, reflect, refract, fresnel, max_error] = render;
+    const auto& [max_depth, direct, reflect, refract, fresnel, max_error, certify] = render;
     digest.add_all(max_depth, direct, reflect, refract, fresnel, max_error);
+    if (certify) digest.add(certify);  // keys of older sweeps stay
     return digest.digits();
 }
 

@@ -125,7 +125,11 @@ const std::vector<Field<RenderSettings>>& render_fields() {
                     "Pixels: facets whose predicted displacement against the exact paths is more are "
                     "divided, and at last traced; 0: they are as 'resolution' says, but for those that are "
                     "off by far more than facets of their size are: a pixel at 32 on a film 480 high, by the "
-                    "square of both.")};
+                    "square of both."),
+            setting(
+                "certify", &RenderSettings::certify, yes_or_no(),
+                "It is proven at each pixel's middle that what a mirror shows is off by at most 'maxError', "
+                "which is above 0; what is not proven is traced.")};
     }();
     return fields;
 }
