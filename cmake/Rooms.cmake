@@ -5,21 +5,23 @@
 include(CMakeParseArguments)
 
 # Contraction off: the same source gives the same last bit on every machine. Names of files as from the source's folder: the
-# same source gives the same library wherever it is built.
+# same source gives the same library wherever it is built (but not where OSS-Fuzz looks for the source of what was reached).
+set(fuzz_flags $<AND:$<BOOL:${TRILENS_FUZZ}>,$<NOT:$<BOOL:${TRILENS_FUZZ_ENGINE}>>>)
 add_library(trilens_options INTERFACE)
 target_compile_options(trilens_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.
+  -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
+  $<$<NOT:$<BOOL:${TRILENS_FUZZ_ENGINE}>>:-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.>
   $<$<BOOL:${TRILENS_WERROR}>:-Werror>
   # GCC 12 sees overruns and overreads in std::string's own copies and, sanitized, uninitialized bytes in std::regex; there are none.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,14>>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict>
   $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${TRILENS_SANITIZE}>>:-Wno-maybe-uninitialized>
-  $<$<BOOL:${TRILENS_FUZZ}>:-fsanitize=fuzzer-no-link>
-  $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,$<BOOL:${TRILENS_FUZZ}>>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
+  $<${fuzz_flags}:-fsanitize=fuzzer-no-link>
+  $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,${fuzz_flags}>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
 target_compile_options(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREADS}>:-fsanitize=thread>)
 target_compile_definitions(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREADS}>:TRILENS_PLAIN_THREADS>)
 target_link_options(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREADS}>:-fsanitize=thread>
-  $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,$<BOOL:${TRILENS_FUZZ}>>:-fsanitize=address,undefined>)
+  $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,${fuzz_flags}>:-fsanitize=address,undefined>)
 
 # A room's units are compiled several together, which reads their headers once. What each calls its own (in an unnamed
 # namespace, or by #define) is therefore named once in a room; the compiler says where it is not. Apart: Highway's
@@ -73,9 +75,15 @@ function(trilens_room name folder)
   endforeach()
   if("hwy::hwy" IN_LIST ROOM_DOORS AND NOT EMSCRIPTEN)
     # Instruction sets that bring this code nothing: SSSE3, and those of AVX-512 beyond its first (the last two are
-    # later versions' names for bits). Sanitized, where it is compiled for minutes: AVX-512 altogether.
+    # later versions' names for bits). Sanitized or fuzzed, where it is compiled for minutes: AVX-512 altogether.
     set(without "HWY_SSSE3|HWY_AVX3_DL|(1LL<<6)|(1LL<<4)")
-    if(TRILENS_SANITIZE OR TRILENS_SANITIZE_THREADS)
+    # On 64-bit ARM: vectors whose length is known only when it runs. NEON is then all there is; the form that Highway
+    # chooses has AES, which nothing here uses, so that it runs without, too.
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+      string(APPEND without "|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128")
+      target_compile_options(trilens_${name} PRIVATE -march=armv8-a+crypto)
+    endif()
+    if(TRILENS_SANITIZE OR TRILENS_SANITIZE_THREADS OR TRILENS_FUZZ)
       string(APPEND without "|HWY_AVX3")
     endif()
     target_compile_definitions(trilens_${name} PRIVATE "HWY_DISABLED_TARGETS=(${without})")
