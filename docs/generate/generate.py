@@ -73,6 +73,13 @@ def write_results(out):
          "By scene: displacement in pixels (99th percentile, mean, largest), the "
          "share of traced pixels, facets and seconds, and the uniform grid of the same 99th percentile. Made by "
          "`bench/max_error.py`.", rows[0], rows[1:])
+    rows = csv_rows(results / "certify.csv")
+    page("certify", "What --certify proves",
+         "`--max-error 0.5 --certify --facets all` on films of 320 x 240, one sample a pixel. Of the optics' pixels the share that is "
+         "proven, and traced; the largest bound in pixels. Proven pixels that `project` was asked of, how many lie beyond their bound, "
+         "and the bound over the distance to the image that it finds (median, worst). Pixels that `compare` held against `trace`, and "
+         "those beyond. The processor's seconds with the proof and without, on a busy machine. Made by `bench/certify.py`.",
+         rows[0], rows[1:])
     rows = csv_rows(results / "reference/convergence.csv")
     page("convergence", "Convergence of every scene",
          "Displacement over n at 160 x 120 pixels, with corner rays that are exact (interpolated) and fitted. Every run of the "
