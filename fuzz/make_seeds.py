@@ -65,6 +65,13 @@ def tables():
     write("wish", "driver", subprocess.run([PROGRAM, "design", "--example"], check=True, capture_output=True).stdout)
 
 
+def lenses():
+    for name in ("cooke-triplet.zmx", "double-gauss.seq"):
+        write("lens", name.split(".")[0], (ROOT / "scenes/lenses" / name).read_text())
+    write("lens", "asphere", "SURF 0\n DISZ INFINITY\nSURF 1\n TYPE EVENASPH\n CURV .02\n CONI -1.5\n PARM 2 -2e-6\n DISZ 4\n"
+          " GLAS ___BLANK 1 0 1.6 50.5\n DIAM 9\nSURF 2\n STOP\n DIAM 9\nSURF 3\n")
+
+
 def volumes():
     write("vtk", "cells", """# vtk DataFile Version 3.0
 all shapes
@@ -230,5 +237,5 @@ def random_bytes():
         write("laws", f"random{seed:02}", random.Random(seed).randbytes(160))
 
 
-for make in (scenes, tables, volumes, models, pictures, studies, random_bytes):
+for make in (scenes, tables, lenses, volumes, models, pictures, studies, random_bytes):
     make()

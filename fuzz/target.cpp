@@ -18,6 +18,7 @@ constexpr std::array kTargets{
     FuzzTarget{"exr", "a picture that is measured and written again", exr_file},
     FuzzTarget{"gltf", "glTF, text or binary, as a scene", gltf_file},
     FuzzTarget{"laws", "random scenes, drawn and held against the laws", random_scene},
+    FuzzTarget{"lens", "a lens file of an optics program", lens_text},
     FuzzTarget{"mtl", "materials of an OBJ", mtl_text},
     FuzzTarget{"nrrd", "a volume on a regular grid", nrrd_text},
     FuzzTarget{"obj", "a cage or model", obj_text},

@@ -58,6 +58,7 @@ Answer wish_text(std::string_view bytes);
 Answer obj_text(std::string_view bytes);
 Answer mtl_text(std::string_view bytes);
 Answer vtk_text(std::string_view bytes);
+Answer lens_text(std::string_view bytes);
 Answer nrrd_text(std::string_view bytes);
 Answer gltf_file(std::string_view bytes);
 Answer exr_file(std::string_view bytes);

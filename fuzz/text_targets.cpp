@@ -1,8 +1,10 @@
-// Fuzz targets of what is read as text: scenes, keyframes, points, pairs, wishes, OBJ, MTL, VTK and NRRD.
+// Fuzz targets of what is read as text: scenes, keyframes, points, pairs, wishes, OBJ, MTL, VTK, NRRD
+// and lens files.
 #include <cmath>
 
 #include "fuzz/target.h"
 #include "scene/data/scene_digest.h"
+#include "scene/formats/lens_file.h"
 #include "scene/formats/obj.h"
 #include "scene/formats/volume_file.h"
 #include "trilens/animation.h"
@@ -10,6 +12,7 @@
 #include "trilens/fit.h"
 #include "trilens/project.h"
 #include "trilens/scene.h"
+#include "trilens/surface.h"
 
 using namespace trilens;
 
@@ -123,6 +126,19 @@ Answer nrrd_text(std::string_view bytes) {
                                             [](const std::string&) { return std::string(64, 'x'); });
         require(grid.scalars.size() == grid.size[0] * grid.size[1] * grid.size[2],
                 "samples that are missing");
+    });
+}
+
+/// Of the format that its first word says.
+Answer lens_text(std::string_view bytes) {
+    return answer([&] {
+        const bool is_sequence = bytes.starts_with("RDM") || bytes.starts_with("LEN");
+        const LensPrescription lens = is_sequence ? parse_code_v(std::string(bytes), "fuzzed.seq")
+                                                  : parse_zemax(std::string(bytes), "fuzzed.zmx");
+        require(!lens.rows.empty(), "a lens without surfaces");
+        require(std::fabs(first_order(lens).focal_length) > 0, "a focal length that is none");
+        for (const LensElement& element : lens_elements(lens))
+            require(element.shape.thickness > 0 && element.glass.index >= 1, "a body that is none");
     });
 }
 

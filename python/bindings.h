@@ -26,6 +26,7 @@ void bind_sweep(py::module_& module);
 void bind_suite(py::module_& module);
 void bind_inverse(py::module_& module);
 void bind_surface(py::module_& module);
+void bind_lens(py::module_& module);
 void bind_ray_mesh(py::module_& module);
 void bind_film_camera(py::module_& module);
 

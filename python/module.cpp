@@ -52,6 +52,7 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_scene_camera(module);
     bindings::bind_scene(module);
     bindings::bind_surface(module);
+    bindings::bind_lens(module);
     bindings::bind_ray_mesh(module);
     bindings::bind_film_camera(module);
     bindings::bind_renderer(module);

@@ -89,13 +89,29 @@ const char* domain_name(const Surface& surface, Id face) {
 struct Lengths {
     double radius, focal_length, height;
     Vec2 size;
+    LensPrimitive lens;
 };
+
+/// (radius, aperture, conic, coefficients of r^2, r^4, ...), the last two may be left out.
+LensSide lens_side(const std::vector<double>& numbers, const char* name) {
+    if (numbers.size() < 2 || numbers.size() > 3 + kAsphereTerms)
+        throw UsageError(std::string(name) + " is (radius, aperture), then conic and up to " +
+                         std::to_string(kAsphereTerms) + " coefficients");
+    LensSide side;
+    side.curvature = numbers[0] == 0 ? 0 : 1 / numbers[0];
+    side.aperture = numbers[1];
+    if (numbers.size() > 2) side.conic = numbers[2];
+    for (std::size_t i = 3; i < numbers.size(); ++i) side.coefficients[i - 3] = numbers[i];
+    return side;
+}
 
 PrimitiveKind primitive_kind(const std::string& type, const Lengths& of) {
     const std::vector<PrimitiveKind> kinds{SpherePrimitive{of.radius},
                                            ParaboloidPrimitive{of.radius, of.focal_length},
                                            CylinderPrimitive{of.radius, of.height},
-                                           ConePrimitive{of.radius, of.height}, PlanePrimitive{of.size}};
+                                           ConePrimitive{of.radius, of.height},
+                                           PlanePrimitive{of.size},
+                                           of.lens};
     std::vector<std::string> names;
     for (const PrimitiveKind& kind : kinds) {
         names.emplace_back(std::visit([](const auto& one) { return one.kName; }, kind));
@@ -168,8 +184,10 @@ void bind_surface_makers(py::module_& module) {
     module.def(
         "primitive_surface",
         [](const std::string& type, const Triple& center, const Triple& axis, const Triple& tangent,
-           double radius, double focal_length, double height, const std::array<double, 2>& size) {
-            const Lengths lengths{radius, focal_length, height, {size[0], size[1]}};
+           double radius, double focal_length, double height, const std::array<double, 2>& size,
+           double thickness, const std::vector<double>& front, const std::vector<double>& back) {
+            const LensPrimitive lens{thickness, lens_side(front, "front"), lens_side(back, "back")};
+            const Lengths lengths{radius, focal_length, height, {size[0], size[1]}, lens};
             return SurfacePointer(
                 make_surface({vec3(center), vec3(axis), vec3(tangent), primitive_kind(type, lengths)}));
         },
@@ -179,15 +197,20 @@ void bind_surface_makers(py::module_& module) {
         py::arg("focal_length") = ParaboloidPrimitive().focal_length,
         py::arg("height") = CylinderPrimitive().height,
         py::arg("size") = py::make_tuple(PlanePrimitive().size.x, PlanePrimitive().size.y),
-        "The exact surface of a \"sphere\", \"paraboloid\", \"cylinder\", \"cone\" or \"plane\", world "
-        "frame and units.\n\n"
+        py::arg("thickness") = LensPrimitive().thickness, py::arg("front") = py::make_tuple(0.0, 1.0),
+        py::arg("back") = py::make_tuple(0.0, 1.0),
+        "The exact surface of a \"sphere\", \"paraboloid\", \"cylinder\", \"cone\", \"plane\" or \"lens\", "
+        "world frame and units.\n\n"
         "center: of sphere, cylinder and plane, of the cone's base; the paraboloid's apex. axis: from the "
         "apex to the\n"
         "focus, along the cylinder, from the cone's base to its apex, or the plane's normal. tangent: where "
         "u begins.\n"
         "radius: of sphere and cylinder, of the cone's base, of the paraboloid's rim. focal_length: apex to "
         "focus.\n"
-        "height: the cylinder's or the cone's. size: the plane's sides.\n"
+        "height: the cylinder's or the cone's. size: the plane's sides. thickness, front, back: the lens', "
+        "whose\n"
+        "center is its front's vertex; a side is (radius, aperture, conic, coefficients of r^2, r^4, ...), "
+        "radius 0 flat.\n"
         "Raises InputError for sizes that are not positive.");
 }
 

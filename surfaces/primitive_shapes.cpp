@@ -7,37 +7,10 @@
 #include <vector>
 
 #include "surfaces/checked_cage.h"
+#include "surfaces/primitives/disk_map.h"
 
 namespace trilens {
 namespace {
-
-constexpr double kHalfTurn = 3.14159265358979323846;
-
-/// Faces whose corners are numbered, so that equal corner pairs are one edge.
-std::vector<FaceBorder> borders_of(const std::vector<std::array<Id, 4>>& face_corners) {
-    EdgeNumbers edges;
-    std::vector<FaceBorder> borders;
-    for (const std::array<Id, 4>& corners : face_corners) {
-        FaceBorder border;
-        border.corners = corners;
-        for (std::size_t k = 0; k < 4; ++k) border.sides[k] = edges.side(corners[k], corners[(k + 1) % 4]);
-        borders.push_back(border);
-    }
-    return borders;
-}
-
-/// tan of -45 to 45 degrees with its derivatives, over a parameter 0 to 1: equal steps are nearly equal
-/// angles.
-struct Tangent {
-    double value, first, second;
-};
-Tangent tangent(double u) {
-    const double x = std::tan(kHalfTurn / 4 * (2 * u - 1));
-    return {x, kHalfTurn / 2 * (1 + x * x), kHalfTurn * kHalfTurn / 2 * x * (1 + x * x)};
-}
-double inverse_tangent(double value) {
-    return std::clamp(0.5 + 2 / kHalfTurn * std::atan(value), 0.0, 1.0);
-}
 
 /// A cube mapped onto the sphere; a face's parameters are angles seen from the centre.
 class Sphere final : public PrimitiveShape {
@@ -116,38 +89,16 @@ class Sphere final : public PrimitiveShape {
     std::vector<FaceBorder> borders_ = borders_of(cube_corners());
 };
 
-/// A vector in the xy plane turned by whole quarter turns, exactly.
-Vec2 quarter_turns(const Vec2& p, Id turns) {
-    switch (turns % 4) {
-        case 1:
-            return {-p.y, p.x};
-        case 2:
-            return {-p.x, -p.y};
-        case 3:
-            return {p.y, -p.x};
-        default:
-            return p;
-    }
-}
-
-/// The quarter turn about z in which a point lies, and which part of it, from 0 to 1, comes before it.
-std::pair<Id, double> quarter_of(const Vec2& p) {
-    const Id quarter = p.y >= 0 ? (p.x > 0 ? 0 : 1) : (p.x <= 0 ? 2 : 3);
-    const Vec2 q = quarter_turns(p, 4 - quarter);
-    return {quarter, std::clamp(std::atan2(q.y, q.x) / (kHalfTurn / 2), 0.0, 1.0)};
-}
-
-/// z = (x^2 + y^2) / (4 focal length) over a disk. The disk is a square of half the radius (face 4) and four
-/// sides (faces 0 to 3, u outward, v around) that blend linearly from its edge to the rim along one angle.
+/// z = (x^2 + y^2) / (4 focal length) over a disk.
 class Paraboloid final : public PrimitiveShape {
   public:
     explicit Paraboloid(const ParaboloidPrimitive& paraboloid)
-        : rim_(paraboloid.radius), inner_(paraboloid.radius / 2), four_f_(4 * paraboloid.focal_length) {}
-    std::size_t face_count() const override { return 5; }
+        : rim_(paraboloid.radius), four_f_(4 * paraboloid.focal_length), disk_(paraboloid.radius) {}
+    std::size_t face_count() const override { return DiskMap::kFaces; }
     FaceBorder border(Id face) const override { return borders_[face]; }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
-        const Flat flat = face == 4 ? square(uv) : side(face, uv);
+        const DiskMap::Flat flat = disk_.at(face, uv);
         const auto lift = [this](const Vec2& a, double z) { return Vec3(a, z / four_f_); };
         SurfacePoint point;
         point.position = lift(flat.p, dot(flat.p, flat.p));
@@ -168,39 +119,13 @@ class Paraboloid final : public PrimitiveShape {
     SurfaceParameter place(const Vec3& point) const override {
         const Vec2 p(point);
         if (!(length(p) <= rim_)) return {};
-        if (std::abs(p.x) <= inner_ && std::abs(p.y) <= inner_)
-            return {4, {inverse_tangent(p.x / inner_), inverse_tangent(p.y / inner_)}};
-        const Id face = std::abs(p.x) >= std::abs(p.y) ? (p.x > 0 ? 0 : 2) : (p.y > 0 ? 1 : 3);
-        const Vec2 q = quarter_turns(p, 4 - face);
-        const double outer = rim_ * q.x / length(q);
-        return {face, {std::clamp((q.x - inner_) / (outer - inner_), 0.0, 1.0), inverse_tangent(q.y / q.x)}};
+        return disk_.place(p);
     }
 
   private:
-    struct Flat {
-        Vec2 p, u, v, uu, uv, vv;  // a point of the disk with its derivatives
-    };
-    Flat square(const Vec2& uv) const {
-        const Tangent a = tangent(uv.x), b = tangent(uv.y);
-        const Vec2 x(inner_, 0), y(0, inner_), none(0);
-        return {a.value * x + b.value * y, a.first * x, b.first * y, a.second * x, none, b.second * y};
-    }
-    Flat side(Id face, const Vec2& uv) const {
-        const Tangent b = tangent(uv.y);
-        const double angle = kHalfTurn / 4 * (2 * uv.y - 1), speed = kHalfTurn / 2;
-        const Vec2 in(inner_, inner_ * b.value), in_v(0, inner_ * b.first), in_vv(0, inner_ * b.second);
-        const Vec2 out = rim_ * Vec2(std::cos(angle), std::sin(angle));
-        const Vec2 out_v = speed * quarter_turns(out, 1), out_vv = -speed * speed * out;
-        const auto blend = [&uv](const Vec2& a, const Vec2& c) { return (1 - uv.x) * a + uv.x * c; };
-        Flat flat{blend(in, out), out - in, blend(in_v, out_v), Vec2(0), out_v - in_v, blend(in_vv, out_vv)};
-        for (Vec2* part : {&flat.p, &flat.u, &flat.v, &flat.uv, &flat.vv}) *part = quarter_turns(*part, face);
-        return flat;
-    }
-
-    double rim_, inner_, four_f_;
-    // Corners of the square 0 to 3 from (-, -) counter-clockwise, those of the rim 4 to 7 outside of them.
-    std::vector<FaceBorder> borders_ =
-        borders_of({{1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}, {0, 4, 5, 1}, {0, 1, 2, 3}});
+    double rim_, four_f_;
+    DiskMap disk_;
+    std::vector<FaceBorder> borders_ = borders_of(DiskMap::corners());
 };
 
 /// Four quarters, u around and v along the axis.
@@ -318,26 +243,34 @@ class Plane final : public PrimitiveShape {
     Vec2 size_;
 };
 
-std::unique_ptr<PrimitiveShape> shape_of(const SpherePrimitive& sphere) {
-    return std::make_unique<Sphere>(sphere);
-}
-std::unique_ptr<PrimitiveShape> shape_of(const ParaboloidPrimitive& paraboloid) {
-    return std::make_unique<Paraboloid>(paraboloid);
-}
-std::unique_ptr<PrimitiveShape> shape_of(const CylinderPrimitive& cylinder) {
-    return std::make_unique<Cylinder>(cylinder);
-}
-std::unique_ptr<PrimitiveShape> shape_of(const ConePrimitive& cone) {
-    return std::make_unique<Cone>(cone);
-}
-std::unique_ptr<PrimitiveShape> shape_of(const PlanePrimitive& plane) {
-    return std::make_unique<Plane>(plane);
-}
-
 }  // namespace
 
-std::unique_ptr<PrimitiveShape> make_primitive_shape(const PrimitiveKind& kind) {
-    return std::visit([](const auto& one) { return shape_of(one); }, kind);
+std::vector<FaceBorder> borders_of(const std::vector<std::array<Id, 4>>& face_corners) {
+    EdgeNumbers edges;
+    std::vector<FaceBorder> borders;
+    for (const std::array<Id, 4>& corners : face_corners) {
+        FaceBorder border;
+        border.corners = corners;
+        for (std::size_t k = 0; k < 4; ++k) border.sides[k] = edges.side(corners[k], corners[(k + 1) % 4]);
+        borders.push_back(border);
+    }
+    return borders;
+}
+
+std::unique_ptr<PrimitiveShape> make_shape(const SpherePrimitive& sphere) {
+    return std::make_unique<Sphere>(sphere);
+}
+std::unique_ptr<PrimitiveShape> make_shape(const ParaboloidPrimitive& paraboloid) {
+    return std::make_unique<Paraboloid>(paraboloid);
+}
+std::unique_ptr<PrimitiveShape> make_shape(const CylinderPrimitive& cylinder) {
+    return std::make_unique<Cylinder>(cylinder);
+}
+std::unique_ptr<PrimitiveShape> make_shape(const ConePrimitive& cone) {
+    return std::make_unique<Cone>(cone);
+}
+std::unique_ptr<PrimitiveShape> make_shape(const PlanePrimitive& plane) {
+    return std::make_unique<Plane>(plane);
 }
 
 }  // namespace trilens

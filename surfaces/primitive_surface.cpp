@@ -2,44 +2,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "base/util/error.h"
-#include "surfaces/primitive_bounds.h"
+#include "surfaces/lens_surface.h"
+#include "surfaces/primitives/primitive_bounds.h"
 #include "surfaces/primitive_shapes.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
 namespace {
 
-/// a b - c d with one rounding error of the result instead of one of the products (Kahan; Jeannerod et al.
-/// 2013).
-double difference_of_products(double a, double b, double c, double d) {
-    const double cd = c * d;
-    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
-}
-
-/// The real t with c[0] + 2 c[1] t + c[2] t^2 = 0, ascending; infinite where there are fewer.
-std::array<double, 2> solve(const std::array<double, 3>& c) {
-    constexpr double kNever = HUGE_VAL;
-    // Most rays miss by more than the four roundings of the plain difference: they need no exact one.
-    const double square = c[1] * c[1], product = c[0] * c[2];
-    if (square - product < -1e-15 * (square + std::fabs(product))) return {kNever, kNever};
-    const double discriminant = difference_of_products(c[1], c[1], c[0], c[2]);
-    if (!(discriminant >= 0)) return {kNever, kNever};
-
-    // Both roots from the sum that does not cancel: one is q / c2, their product c0 / c2.
-    const double q = -(c[1] + std::copysign(std::sqrt(discriminant), c[1]));
-    if (q == 0) return {c[2] != 0 ? 0 : kNever, kNever};
-    const double near_zero = c[0] / q, other = c[2] != 0 ? q / c[2] : kNever;
-    return {std::min(near_zero, other), std::max(near_zero, other)};
-}
-
 class PrimitiveSurface final : public Surface {
   public:
-    PrimitiveSurface(const Primitive& primitive, const Mat3& world_from_local)
+    PrimitiveSurface(const Primitive& primitive, std::unique_ptr<PrimitiveShape> shape,
+                     const Mat3& world_from_local)
         : kind_(primitive.kind),
-          shape_(make_primitive_shape(primitive.kind)),
+          shape_(std::move(shape)),
           center_(primitive.center),
           world_from_local_(world_from_local) {}
 
@@ -103,7 +83,7 @@ class PrimitiveSurface final : public Surface {
         const double start = dot(shape_->equation_center() - origin, direction) / squared;
         origin += start * direction;
 
-        for (double root : solve(shape_->equation({origin, direction}))) {
+        for (double root : quadric_roots(shape_->equation({origin, direction}))) {
             const double t = start + root;
             if (!std::isfinite(t) || !(t > t_min)) continue;
             if (use(t, origin + root * direction)) return;
@@ -124,6 +104,9 @@ void check_positive(double value, const char* what) {
 void check_sizes(const Primitive& primitive) {
     PrimitiveKind kind = primitive.kind;
     std::visit([](auto& one) { for_each_length(one, check_positive); }, kind);
+    if (const auto* lens = std::get_if<LensPrimitive>(&kind))
+        if (const char* fault = lens_fault(lens->front, lens->back, lens->thickness))
+            throw InputError("", "primitive", std::string("no lens: ") + fault);
     const Vec3& c = primitive.center;
     if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z))
         throw InputError("", "primitive", "center must be finite");
@@ -141,7 +124,15 @@ Mat3 frame_of(const Primitive& primitive) {
 
 std::unique_ptr<Surface> make_primitive_surface(const Primitive& primitive) {
     check_sizes(primitive);
-    return std::make_unique<PrimitiveSurface>(primitive, frame_of(primitive));
+    const Mat3 frame = frame_of(primitive);
+    return std::visit(
+        [&]<typename Kind>(const Kind& kind) -> std::unique_ptr<Surface> {
+            if constexpr (std::is_same_v<Kind, LensPrimitive>)
+                return make_lens_surface(kind, primitive.center, frame);
+            else
+                return std::make_unique<PrimitiveSurface>(primitive, make_shape(kind), frame);
+        },
+        primitive.kind);
 }
 
 }  // namespace trilens

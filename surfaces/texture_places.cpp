@@ -64,7 +64,8 @@ TexturePlaces places_on_primitive(const Primitive& primitive) {
         if (r > 0) place.along_u = (p.x * frame.y - p.y * frame.x) / r;
         // v grows along the axis, on a bowl outward: at right angles to u on the surface.
         const Vec3 across = cross(at.normal, place.along_u);
-        const bool is_bowl = std::holds_alternative<ParaboloidPrimitive>(primitive.kind);
+        const bool is_bowl = std::holds_alternative<ParaboloidPrimitive>(primitive.kind) ||
+                             std::holds_alternative<LensPrimitive>(primitive.kind);
         const Vec3 growth = is_bowl ? p.x * frame.x + p.y * frame.y : frame.z;
         place.along_v = dot(across, growth) < 0 ? -across : across;
         if (const auto* sphere = std::get_if<SpherePrimitive>(&primitive.kind))
@@ -74,6 +75,8 @@ TexturePlaces places_on_primitive(const Primitive& primitive) {
         if (const auto* cone = std::get_if<ConePrimitive>(&primitive.kind)) place.uv.y = p.z / cone->height;
         if (const auto* bowl = std::get_if<ParaboloidPrimitive>(&primitive.kind))
             place.uv.y = r / bowl->radius;
+        if (const auto* lens = std::get_if<LensPrimitive>(&primitive.kind))
+            place.uv.y = r / std::max(lens->front.aperture, lens->back.aperture);
         return place;
     };
 }

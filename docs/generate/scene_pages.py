@@ -190,6 +190,8 @@ PRIMITIVES = {
     "cylinder": {"type": "cylinder", "center": [0, 1, 0], "axis": [0.3, 1, 0], "radius": 0.7, "height": 1.8},
     "cone": {"type": "cone", "center": [0, 0.1, 0], "axis": [0.1, 1, 0.3], "radius": 1.1, "height": 1.7},
     "plane": {"type": "plane", "center": [0, 1, -0.5], "normal": [0.3, 0.2, 1], "size": [2.2, 1.8]},
+    "lens": {"type": "lens", "center": [0, 1, 0.4], "axis": [0.2, 0.1, -1], "thickness": 0.8,
+             "front": {"radius": 1.8, "aperture": 1.1}, "back": {"radius": -2.2, "aperture": 1}},
     "box": {"type": "box", "center": [0, 0.7, 0], "axis": [0.2, 1, 0.1], "size": [1.6, 1.2, 1]},
     "disk": {"type": "disk", "center": [0, 1, 0], "normal": [0.3, 0.6, 1], "radius": 0.9},
 }

@@ -768,7 +768,33 @@ def primitive_surface(
     focal_length: float = 1.0,
     height: float = 2.0,
     size: Sequence[float] = (2.0, 2.0),
+    thickness: float = 0.5,
+    front: Sequence[float] = (0.0, 1.0),
+    back: Sequence[float] = (0.0, 1.0),
 ) -> Surface: ...
+
+class Lens:
+    @property
+    def name(self) -> str: ...
+    @property
+    def surface_count(self) -> int: ...
+    def first_order(self, *, line: str = "d") -> dict[str, float]: ...
+    def seidel(self, pupil_radius: float, field_slope: float) -> dict[str, Any]: ...
+    def spot(
+        self,
+        *,
+        pupil_radius: float = 0.0,
+        field: float = 0.0,
+        line: str = "d",
+        rings: int = 8,
+        shift: float = 0.0,
+    ) -> dict[str, Any]: ...
+    def trace(
+        self, origin: _Triple, direction: _Triple, *, line: str = "d"
+    ) -> Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]: ...
+
+def load_lens(file: _File) -> Lens: ...
+def glass_names() -> list[str]: ...
 
 class SuiteTest:
     @property

@@ -19,10 +19,11 @@ Command make_commands() {
     Command root{.name = "trilens",
                  .summary = "draw what curved mirrors and glass show, by projection, and measure its error"};
     root.commands = render_commands();
-    for (Command& command : std::vector<Command>{
-             compare_command(), sweep_command(), report_command(), test_command(), project_command(),
-             shoot_command(), fit_command(), design_command(), unwrap_command(), map_command(),
-             caustic_command(), anamorph_command(), view_command(), scene_command(), info_command()})
+    for (Command& command :
+         std::vector<Command>{compare_command(), sweep_command(), report_command(), test_command(),
+                              project_command(), shoot_command(), fit_command(), design_command(),
+                              unwrap_command(), map_command(), caustic_command(), anamorph_command(),
+                              view_command(), scene_command(), lens_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;
@@ -131,6 +132,9 @@ std::vector<Example> examples_of(const std::string& called) {
         {"trilens scene example",
          {{"trilens scene example", "their names"},
           {"trilens scene example mirror-sphere > scene.json", "one of them, to start from"}}},
+        {"trilens lens",
+         {{"trilens lens triplet.zmx --field 12", "focal length, pupils, Seidel sums, the spot"},
+          {"trilens lens triplet.zmx --field 12 --line F --rings 20 -o spot.csv", "where blue rays fall"}}},
         {"trilens info", {{"trilens info", "for a report of a problem"}}}};
     const auto found = kExamples.find(called);
     return found == kExamples.end() ? std::vector<Example>{} : found->second;

@@ -24,6 +24,7 @@ Command fit_command();
 Command design_command();
 Command test_command();
 Command scene_command();
+Command lens_command();
 Command info_command();
 Command view_command();  // starts the viewer, a program of its own
 

@@ -40,6 +40,19 @@ void grow_by(Box& box, const ConePrimitive& cone, const Primitive& at) {
     box.include(at.center + cone.height * at.axis);
 }
 
+/// Rings of both sides, from the vertex to the rim.
+void grow_by(Box& box, const LensPrimitive& lens, const Primitive& at) {
+    constexpr int kRings = 64;
+    for (const bool is_front : {true, false}) {
+        const LensSide& side = is_front ? lens.front : lens.back;
+        for (int i = 0; i <= kRings; ++i) {
+            const double r = side.aperture * i / kRings;
+            const double z = sag_at(side, r * r).z + (is_front ? 0 : lens.thickness);
+            grow_by_disk(box, at.center + z * at.axis, at.axis, r);
+        }
+    }
+}
+
 void grow_by(Box& box, const PlanePrimitive& plane, const Primitive& at) {
     const Vec3 u = 0.5 * plane.size.x * at.tangent, v = 0.5 * plane.size.y * cross(at.axis, at.tangent);
     for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) box.include(at.center + corner);

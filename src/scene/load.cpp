@@ -13,8 +13,10 @@
 #include "scene/data/alpha_cut.h"
 #include "scene/data/light_objects.h"
 #include "scene/imports/expand_imports.h"
+#include "scene/imports/expand_lenses.h"
 #include "scene/imports/housing.h"
 #include "scene/read/override.h"
+#include "scene/read/read_lens.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -105,12 +107,17 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     const std::string& file = source.file;
     Json json = parse_json(text, file);
     Reading reading(file, source.folder, textures);
-    // What is imported must be known before its parts can be changed.
-    std::vector<SceneOverride> of_import, others;
+    // What is imported, or made of lenses, must be known before its parts can be changed.
+    std::vector<SceneOverride> of_import, of_lenses, others;
     for (const SceneOverride& change : overrides)
-        (change.pointer.rfind("/import", 0) == 0 ? of_import : others).push_back(change);
+        (change.pointer.starts_with("/import")   ? of_import
+         : change.pointer.starts_with("/lenses") ? of_lenses
+                                                 : others)
+            .push_back(change);
     apply_overrides(json, of_import, file);
     expand_imports(json, import, reading);
+    apply_overrides(json, of_lenses, file);
+    expand_lenses(json, reading);
     apply_overrides(json, others, file);
     if (const auto found = find_problem(json, scene_schema_json()))
         fail_at(file, found->place, found->message);
@@ -152,6 +159,10 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
     return scene;
 }
 
+LensPrescription load_lens(const std::string& file) {
+    return parse_lens(read_required_file(file), file);
+}
+
 namespace {
 
 /// Every "file" of the document, named from another folder.
@@ -160,7 +171,8 @@ void move_files(Json& part, const std::filesystem::path& from, const std::filesy
         for (Json& entry : part) move_files(entry, from, to);
     if (!part.is_object()) return;
     for (auto& [key, value] : part.items()) {
-        const bool names = (key == "file" || key == "heights" || key.ends_with("Texture")) && value.is_string();
+        const bool names =
+            (key == "file" || key == "heights" || key.ends_with("Texture")) && value.is_string();
         if (names) {
             const std::filesystem::path path = value.get<std::string>();
             if (path.is_relative())

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "lens/prescription.h"
 #include "scene/data/scene.h"
 #include "scene/data/scene_inputs.h"
 #include "scene/read/scene_schema.h"
@@ -18,6 +19,10 @@ namespace trilens {
 /// imported. What is legal but doubtful goes to Scene::warnings.
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
                  const TextureReader& textures, const ImportOptions& import = {});
+
+/// The lens of a file, by the ending of its name: Zemax (.zmx), CODE V (.seq), or JSON (.json) with the
+/// `surfaces` of an entry of a scene's `lenses`. Throws InputError with the file and the place in it.
+LensPrescription load_lens(const std::string& file);
 
 /// Where a scene's text comes from.
 struct SceneSource {

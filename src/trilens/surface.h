@@ -1,4 +1,5 @@
-// Curved surfaces: limit surfaces of cages, exact primitives, and N x N grids on them.
+// Curved surfaces: limit surfaces of cages, exact primitives, and N x N grids on them; and lenses by their
+// prescriptions: first order, Seidel's sums, exact rays and spots.
 //
 //     trilens::Cage cage;
 //     cage.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -7,6 +8,9 @@
 //     const auto surface = trilens::make_surface(cage);
 //     const trilens::SurfacePoint middle = surface->eval(0, {0.5, 0.5});
 //     const trilens::SurfaceGrid grid = trilens::make_surface_grid(*surface, 8);
+//
+//     const trilens::LensPrescription lens = trilens::load_lens("triplet.zmx");
+//     const double focal_length = trilens::first_order(lens).focal_length;
 #pragma once
 
 #include <memory>
@@ -15,6 +19,9 @@
 #include "base/description/optic_description.h"
 #include "base/raymesh/surface.h"
 #include "base/util/error.h"
+#include "lens/first_order.h"
+#include "lens/prescription.h"
+#include "lens/sequential_rays.h"
 
 namespace trilens {
 

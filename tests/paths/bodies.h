@@ -65,14 +65,14 @@ inline FlatBody make_prism(const std::array<Vec2, 3>& corner, double depth) {
 }
 
 /// One side of a lens about the z axis: through (0, 0, vertex), its centre at vertex - 1 / curvature.
-struct LensSide {
+struct CapSide {
     double vertex = 0, curvature = 0;
 };
 
 /// A lens of square outline |x|, |y| <= half: `front` above in z, `back` below, four walls between.
 class Lens : public trilens::Surface {
   public:
-    Lens(const LensSide& front, const LensSide& back, double half)
+    Lens(const CapSide& front, const CapSide& back, double half)
         : front_(front), back_(back), half_(half) {}
     std::size_t face_count() const override { return 6; }
     FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
@@ -112,14 +112,14 @@ class Lens : public trilens::Surface {
     struct Height {
         double z, zx, zy, zxx, zxy, zyy;
     };
-    static Height height(const LensSide& side, const Vec2& at) {
+    static Height height(const CapSide& side, const Vec2& at) {
         const double c = side.curvature, r2 = dot(at, at), root = std::sqrt(1 - c * c * r2);
         const double c3 = c * c * c / (root * root * root);
         return {side.vertex - c * r2 / (1 + root), -c * at.x / root,  -c * at.y / root,
                 -c / root - c3 * at.x * at.x,      -c3 * at.x * at.y, -c / root - c3 * at.y * at.y};
     }
 
-    LensSide front_, back_;
+    CapSide front_, back_;
     double half_;
 };
 

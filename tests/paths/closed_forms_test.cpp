@@ -51,12 +51,12 @@ Ray world_ray(const Meridional& ray, const Vec3& side, double from_z) {
     return {(ray.y - std::tan(ray.angle) * from_z) * side + Vec3(0, 0, from_z), direction};
 }
 
-void check_lens(const LensSide& front, const LensSide& back, double n) {
+void check_lens(const CapSide& front, const CapSide& back, double n) {
     Stage stage;
     stage.world.fresnel = false;
     const Id lens = stage.add_body(Lens(front, back, 1.2), glass_of(n));
     Random random(31);
-    const auto side_of = [&](const Meridional& in, const LensSide& side, double eta) {
+    const auto side_of = [&](const Meridional& in, const CapSide& side, double eta) {
         return side.curvature == 0 ? through_plane(in, side.vertex, eta)
                                    : through_sphere(in, side.vertex, 1 / side.curvature, eta);
     };
@@ -205,7 +205,7 @@ TEST_CASE("plano-convex, biconvex and meniscus lenses trace as the trigonometric
 
 TEST_CASE("rays near the axis meet at the lensmaker's focus", "[paths][oracle]") {
     struct Case {
-        LensSide front, back;
+        CapSide front, back;
         double n;
     };
     for (const auto& [front, back, n] :

@@ -262,8 +262,7 @@ TEST_CASE("keys that need or exclude each other", "[scene]") {
         {"/meshes/1/file", "ball.obj", "/meshes/1: a mesh has 'file' and 'primitive': only one may be given"},
         {"/meshes/1/primitive", R"({"type":"box","size":[1,1,1]})",
          "/meshes/1/primitive/type: a box is an object's: an optic is a sphere, a paraboloid, a cylinder, a "
-         "cone, a plane, or "
-         "a cage"},
+         "cone, a plane, a lens, or a cage"},
         {"/meshes/1/primitive", R"({"type":"box"})", "/meshes/1/primitive: a box needs 'size'"},
         {"/meshes/1/primitive", R"({"type":"plane","size":[1,1,1]})",
          "/meshes/1/primitive/size: has 3 entries, must have 2 for a plane"},

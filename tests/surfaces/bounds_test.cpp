@@ -104,9 +104,14 @@ Primitive primitive_of(const PrimitiveKind& kind) {
     return {.center = {3, -2, 0.5}, .axis = {0.3, 0.8, -0.4}, .kind = kind};
 }
 
-const std::array<PrimitiveKind, 5> kBoundedKinds = {SpherePrimitive{1.7}, ParaboloidPrimitive{1.7, 0.6},
+/// A hyperboloid before an even asphere.
+const LensPrimitive kLens{0.9,
+                          {.curvature = 0.4, .conic = -2.2, .aperture = 1.3},
+                          {.curvature = -0.3, .conic = 0.6, .coefficients = {0.01, -0.02, 0.004}}};
+
+const std::array<PrimitiveKind, 6> kBoundedKinds = {SpherePrimitive{1.7},      ParaboloidPrimitive{1.7, 0.6},
                                                     CylinderPrimitive{1.7, 4}, ConePrimitive{1.7, 1.1},
-                                                    PlanePrimitive{{3, 0.7}}};
+                                                    PlanePrimitive{{3, 0.7}},  kLens};
 
 /// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
 Cage octahedron() {
@@ -162,7 +167,7 @@ TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") 
     }
     for (const PrimitiveKind& kind : kBoundedKinds)
         surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(kind)));
-    REQUIRE(surfaces.size() == 9);
+    REQUIRE(surfaces.size() == 10);
 
     Boxes boxes(77);
     for (const auto& [name, surface] : surfaces) {

@@ -247,9 +247,9 @@ TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens
         with_cage([&](Cage& cage) {
             cage.corner_indices = {0}, cage.corner_sharpnesses = {static_cast<float>(x)};
         });
-        for (const PrimitiveKind& kind :
-             std::initializer_list<PrimitiveKind>{SpherePrimitive(), ParaboloidPrimitive(),
-                                                  CylinderPrimitive(), ConePrimitive(), PlanePrimitive()})
+        for (const PrimitiveKind& kind : std::initializer_list<PrimitiveKind>{
+                 SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(), ConePrimitive(),
+                 PlanePrimitive(), LensPrimitive()})
             for (int field = 0; field < 5; ++field) {
                 Primitive odd{.kind = kind};
                 if (field == 0) odd.center = Vec3(x);
@@ -334,4 +334,35 @@ TEST_CASE("what looks through meshes by itself refuses what does not fit togethe
     }
     mesh.facets[0][1] = 44;
     CHECK(refusal([&] { caustic_sheets({mesh, {}, 1}); }).rfind("facets/0: ", 0) == 0);
+}
+
+TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]") {
+    for (const std::string& text : kOddTexts) {
+        only_errors("load_lens", [&] { load_lens(text); });
+        only_errors("find_glass", [&] { find_glass(text, text, text); });
+    }
+    CHECK(!glass_names().empty());
+    only_errors("stop_row", [] { stop_row({}); });
+    only_errors("vertex_of", [] { vertex_of({}, 7); });
+    only_errors("paraxial_ray", [] { paraxial_ray({}, {1, 1}); });
+    only_errors("trace_lens", [] { trace_lens({}, {Vec3(0), Vec3(0)}); });
+    for (const double x : kOddNumbers)
+        for (int field = 0; field < 8; ++field) {
+            LensPrescription lens{"odd", "odd", {}};
+            lens.rows = {{{0.02, 0, {}, 10}, 4, {"glass", 1.5, 60}, true},
+                         {{-0.02, 0, {}, 10}, 0, {}, false}};
+            LensRow& row = lens.rows[0];
+            const std::array<double*, 7> numbers{
+                &row.side.curvature, &row.side.conic,  &row.side.aperture, &row.side.coefficients[1],
+                &row.thickness,      &row.glass.index, &row.glass.abbe};
+            if (field < 7) *numbers[static_cast<std::size_t>(field)] = x;
+            only_errors("check_prescription", [&] { check_prescription(lens); });
+            only_errors("index_at", [&] { index_at(row.glass, SpectralLine::kF); });
+            only_errors("lens_elements", [&] { lens_elements(lens); });
+            only_errors("first_order", [&] { first_order(lens); });
+            only_errors("paraxial_ray", [&] { paraxial_ray(lens, {x, x}); });
+            only_errors("seidel_sums", [&] { seidel_sums(lens, {x, x}); });
+            only_errors("trace_lens", [&] { trace_lens(lens, {Vec3(x), Vec3(x, 0, 1)}); });
+            only_errors("spot_of", [&] { spot_of(lens, {x, x, SpectralLine::kC, 2, x}); });
+        }
 }

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/description/lens_side.h"
 #include "base/math/vec.h"
 #include "base/util/ids.h"
 #include "base/util/names.h"
@@ -116,8 +117,22 @@ void for_each_length(PlanePrimitive& plane, const Use& use) {
     use(size.y, "size");
 }
 
-using PrimitiveKind =
-    std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive, ConePrimitive, PlanePrimitive>;
+/// A closed body between two sides, with a straight edge from rim to rim. Its centre is the vertex of its
+/// front side, its axis goes from there to that of its back. Its sides' shapes are scaled by scaled().
+struct LensPrimitive {
+    static constexpr const char* kName = "lens";
+    double thickness = 0.5;  // along the axis
+    LensSide front = {}, back = {};
+};
+template <typename Use>
+void for_each_length(LensPrimitive& lens, const Use& use) {
+    use(lens.thickness, "thickness");
+    use(lens.front.aperture, "aperture");
+    use(lens.back.aperture, "aperture");
+}
+
+using PrimitiveKind = std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive, ConePrimitive,
+                                   PlanePrimitive, LensPrimitive>;
 
 /// An optic given by a formula instead of a cage; world frame.
 struct Primitive {

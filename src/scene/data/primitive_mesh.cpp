@@ -73,18 +73,20 @@ Patch square(const Vec3& middle, const Vec3& along_u, const Vec3& along_v) {
     };
 }
 
-/// A disk whose normal is the frame's axis, or against it.
+/// A disk whose normal is the frame's axis, or against it; with a hole in its middle, a ring.
 struct Disk {
     Vec3 middle;
     double radius;
     bool along;
+    double hole = 0;
 };
 void add_disk(const Disk& disk, const AxisFrame& frame, int segments, PolygonMesh& mesh) {
     const double turn = disk.along ? 1 : -1;
     const Patch patch = [=](double u, double v) {
-        return SurfaceCorner{disk.middle + (1 - v) * disk.radius * frame.around(turn * u), turn * frame.axis};
+        const double radius = (1 - v) * disk.radius + v * disk.hole;
+        return SurfaceCorner{disk.middle + radius * frame.around(turn * u), turn * frame.axis};
     };
-    add_patch(patch, segments, 1, {false, true}, mesh);
+    add_patch(patch, segments, 1, {false, disk.hole == 0}, mesh);
 }
 
 // Each kind's patches; p has its place and segments.
@@ -140,6 +142,37 @@ void add_shape(const PlanePrimitive& plane, const ObjectPrimitive& p, PolygonMes
     add_patch(square(p.center, plane.size.x * frame.tangent, plane.size.y * frame.side), 1, 1, {}, mesh);
 }
 
+void add_shape(const LensPrimitive& lens, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    struct Ring {
+        double radius, z;
+    };
+    const auto on = [&](const Ring& ring, const Vec3& out) {
+        return p.center + ring.radius * out + ring.z * frame.axis;
+    };
+    // Fronts look out of the glass: the front side's against the axis, so it is turned the other way.
+    for (const bool is_front : {true, false}) {
+        const LensSide& side = is_front ? lens.front : lens.back;
+        const double turn = is_front ? -1 : 1, vertex = is_front ? 0 : lens.thickness;
+        const Patch patch = [&](double u, double v) {
+            const double r = (1 - v) * side.aperture;
+            const Sag sag = sag_at(side, r * r);
+            const Vec3 out = frame.around(is_front ? 1 - u : u);
+            return SurfaceCorner{on({r, vertex + sag.z}, out),
+                                 turn * normalize(frame.axis - 2 * sag.by_s * r * out)};
+        };
+        add_patch(patch, p.segments, (p.segments + 3) / 4, {false, true}, mesh);
+    }
+    const Ring low{lens.front.aperture, sag_of_rim(lens.front)},
+        high{lens.back.aperture, lens.thickness + sag_of_rim(lens.back)};
+    const Patch edge = [&](double u, double v) {
+        const Vec3 out = frame.around(u);
+        return SurfaceCorner{(1 - v) * on(low, out) + v * on(high, out),
+                             normalize((high.z - low.z) * out - (high.radius - low.radius) * frame.axis)};
+    };
+    add_patch(edge, p.segments, 1, {}, mesh);
+}
+
 void add_shape(const BoxPrimitive& box, const ObjectPrimitive& p, PolygonMesh& mesh) {
     const AxisFrame frame(p);
     const Vec3 half[3] = {0.5 * box.size.x * frame.tangent, 0.5 * box.size.y * frame.axis,
@@ -152,7 +185,7 @@ void add_shape(const BoxPrimitive& box, const ObjectPrimitive& p, PolygonMesh& m
 }
 
 void add_shape(const DiskPrimitive& disk, const ObjectPrimitive& p, PolygonMesh& mesh) {
-    add_disk({p.center, disk.radius, true}, AxisFrame(p), p.segments, mesh);
+    add_disk({p.center, disk.radius, true, disk.hole}, AxisFrame(p), p.segments, mesh);
 }
 
 }  // namespace

@@ -19,14 +19,16 @@ struct BoxPrimitive {
 struct DiskPrimitive {
     static constexpr const char* kName = "disk";
     double radius = 1;
+    double hole = 0;  // radius of a hole in its middle, below its own; 0: none
 };
 
-using ObjectPrimitiveKind = std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive,
-                                         ConePrimitive, PlanePrimitive, BoxPrimitive, DiskPrimitive>;
+using ObjectPrimitiveKind =
+    std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive, ConePrimitive, PlanePrimitive,
+                 LensPrimitive, BoxPrimitive, DiskPrimitive>;
 
 /// A primitive as an object has it, in the mesh's own frame.
 struct ObjectPrimitive {
-    Vec3 center{0};                        // paraboloid: its apex; cone: of its base
+    Vec3 center{0};  // paraboloid: its apex; cone: of its base; lens: its front's vertex
     Vec3 axis{0, 1, 0}, tangent{1, 0, 0};  // unit, at right angles
     ObjectPrimitiveKind kind = SpherePrimitive();
     int segments = 48;  // of a full circle, 3..1024
@@ -37,8 +39,8 @@ inline const char* kind_name(const ObjectPrimitive& primitive) {
 }
 
 /// Quads and triangles with exact normals and uvs (u around the axis from the tangent, v along it; plane, box
-/// and disk: each side from corner to corner), fronts outwards. Spheres, boxes, cylinders and cones are
-/// closed.
+/// and disk: each side from corner to corner), fronts outwards. Spheres, boxes, cylinders, cones
+/// and lenses are closed.
 PolygonMesh tessellate(const ObjectPrimitive& primitive);
 
 }  // namespace trilens

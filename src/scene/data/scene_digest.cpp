@@ -190,6 +190,12 @@ void add(const Primitive& primitive, Digest& digest) {
     digest.add_all(center, axis, tangent, kind.index());
     const auto add_length = [&](double length, const char*) { digest.add(length); };
     std::visit([&](auto& one) { for_each_length(one, add_length); }, kind);
+    if (const auto* lens = std::get_if<LensPrimitive>(&kind)) {
+        for (const LensSide& side : {lens->front, lens->back}) {
+            const auto& [curvature, conic, coefficients, aperture] = side;
+            digest.add_all(curvature, conic, coefficients, aperture);
+        }
+    }
 }
 
 void add(const Cage& cage, Digest& digest) {

@@ -13,6 +13,9 @@
 
 namespace trilens {
 
+/// glTF has radians, scenes have degrees.
+inline constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
+
 /// What trilens takes from a glTF material.
 struct GltfMaterial {
     Material material;  // without its texture

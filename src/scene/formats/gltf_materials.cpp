@@ -12,7 +12,6 @@
 namespace trilens {
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
 class MaterialReader {
   public:

@@ -16,7 +16,6 @@
 namespace trilens {
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 constexpr double kFramesPerSecond = 24;
 
 Json array_of(const Vec3& v) {

@@ -109,7 +109,8 @@ const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
         });
         return std::vector<Field<P>>{
             type_field<P>(),
-            setting("center", &P::center, ref("vec3"), "paraboloid: its apex; cone: of its base."),
+            setting("center", &P::center, ref("vec3"),
+                    "paraboloid: its apex; cone: of its base; lens: its front's vertex."),
             of_kinds<P>("radius", TRILENS_MEMBER(radius), ref("positive"),
                         "paraboloid: of its rim; cone: of its base."),
             direction_of("axis", Turns::kAxis),
@@ -117,6 +118,11 @@ const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
             std::move(tangent),
             of_kinds<P>("focalLength", TRILENS_MEMBER(focal_length), ref("positive"), ""),
             of_kinds<P>("height", TRILENS_MEMBER(height), ref("positive"), ""),
+            of_kinds<P>("thickness", TRILENS_MEMBER(thickness), ref("positive"), "From vertex to vertex."),
+            of_kinds<P>("front", TRILENS_MEMBER(front), ref("lensSide"), "", Need::kYes),
+            of_kinds<P>("back", TRILENS_MEMBER(back), ref("lensSide"), "", Need::kYes),
+            of_kinds<P>("hole", TRILENS_MEMBER(hole), ref("notNegative"),
+                        "Radius of a hole in its middle, below its own; 0: none."),
             std::move(size),
             std::move(segments),
         };
@@ -129,9 +135,10 @@ Json primitive_schema() {
         {.title = "a primitive",
          .description =
              "A mesh given by a formula: of an optic exact (sphere, paraboloid, cylinder without lids, "
-             "cone without its base, plane), of an object cut into polygons (spheres, boxes, cylinders and "
-             "cones closed). axis: paraboloid from apex to focus, cylinder along it, cone from its base to "
-             "its apex; tangent: where u begins.",
+             "cone without its base, plane, lens), of an object cut into polygons (spheres, boxes, "
+             "cylinders, "
+             "cones and lenses closed). axis: paraboloid from apex to focus, cylinder along it, cone from "
+             "its base to its apex, lens from its front to its back; tangent: where u begins.",
          .required = {"type"},
          .kind_title = "a #"},
         primitive_fields());
@@ -154,6 +161,11 @@ ObjectPrimitive read_shape(const Node& node) {
     check_sides(node);
     ObjectPrimitive shape;
     read_fields(node, primitive_fields(), shape);
+    if (const auto* lens = std::get_if<LensPrimitive>(&shape.kind))
+        if (const char* fault = lens_fault(lens->front, lens->back, lens->thickness))
+            node.fail(std::string("is no lens: ") + fault);
+    if (const auto* disk = std::get_if<DiskPrimitive>(&shape.kind); disk && !(disk->hole < disk->radius))
+        node["hole"].fail("is not smaller than the disk");
     const char* const axis = node.has("normal") ? "normal" : "axis";
     if (node.has(axis)) shape.axis = read_direction(node[axis]);
     shape.tangent = read_tangent(node, shape.axis);
@@ -181,7 +193,7 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
     std::optional<PrimitiveKind> kind = optic_kind(shape.kind);
     if (!kind)
         node["type"].fail(std::string("a ") + kind_name(shape) + " is an object's: an optic is " +
-                          "a sphere, a paraboloid, a cylinder, a cone, a plane, or a cage");
+                          "a sphere, a paraboloid, a cylinder, a cone, a plane, a lens, or a cage");
     if (node.has("segments")) node["segments"].fail("are an object's: an optic is exact");
     const std::optional<double> factor = similarity_factor(transform);
     if (!factor) mesh["transform"].fail("a primitive stays exact only under a uniform scale");
@@ -195,6 +207,14 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
         side *= *factor;
         extent = std::max(extent, side);
     };
+    if (auto* lens = std::get_if<LensPrimitive>(&*kind)) {
+        // Their apertures are scaled with all lengths.
+        for (LensSide* side : {&lens->front, &lens->back}) {
+            const double aperture = side->aperture;
+            *side = scaled(*side, *factor);
+            side->aperture = aperture;
+        }
+    }
     std::visit([&](auto& one) { for_each_length(one, scale); }, *kind);
     primitive.kind = *kind;
     if (!(extent <= kLargestCoordinate))

@@ -107,6 +107,8 @@ std::shared_ptr<const Texture> read_numbers(Reading& reading, const std::string&
 std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const TextureSampler& wrap);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
+/// A side of a lens, of a checked object.
+void from_json_value(const Json& json, LensSide& side);
 /// The polygons of an object's primitive, in its own frame.
 PolygonMesh read_object_primitive(const Node& primitive);
 Transform read_transform(const Node& mesh);
@@ -176,6 +178,7 @@ Json mesh_schema();
 Json region_schema();  // of a terrain
 Json patch_schema();   // of a mesh
 Json primitive_schema();
+Json lens_side_schema();  // of a primitive
 Json normals_schema();
 
 }  // namespace trilens

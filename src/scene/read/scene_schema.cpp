@@ -5,6 +5,7 @@
 #include <string>
 
 #include "json/schema.h"
+#include "scene/read/read_lens.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -28,6 +29,7 @@ constexpr const char* kFrame = R"json({
   "background": { "$ref": "#/definitions/background" },
   "materials": { "type": "array", "items": { "$ref": "#/definitions/material" } },
   "meshes": { "type": "array", "items": { "$ref": "#/definitions/mesh" } },
+  "lenses": { "type": "array", "items": { "$ref": "#/definitions/lens" } },
   "volumes": { "type": "array", "items": { "$ref": "#/definitions/volume" } },
   "lights": { "type": "array", "items": { "$ref": "#/definitions/light" } },
   "render": { "$ref": "#/definitions/render" },
@@ -172,6 +174,9 @@ Json make_schema() {
     definitions["region"] = region_schema();
     definitions["patch"] = patch_schema();
     definitions["primitive"] = primitive_schema();
+    definitions["lensSide"] = lens_side_schema();
+    definitions["lens"] = lens_schema();
+    definitions["lensSurface"] = lens_surface_schema();
     definitions["normals"] = normals_schema();
     definitions["light"] = light_schema();
     definitions["volume"] = volume_schema();

@@ -1,5 +1,5 @@
 // The mean value theorem with the largest derivatives over each whole face.
-#include "surfaces/primitive_bounds.h"
+#include "surfaces/primitives/primitive_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +101,52 @@ Slopes slopes_of(const PlanePrimitive& plane, Id) {
     Slopes s;
     s.u = plane.size.x;
     s.v = plane.size.y;
+    return s;
+}
+
+/// A side lifts the disk by its sag f(|p|^2), by the chain rule with s = |p|^2.
+Slopes side_slopes(const LensSide& side, bool inner) {
+    const Slopes p = disk_slopes(side.aperture, inner);
+    const double far = side.aperture;
+    const auto [f1, f2, f3] = largest_slopes(side);
+    const double su = 2 * far * p.u, sv = 2 * far * p.v;
+    const double suu = 2 * (p.u * p.u + far * p.uu), suv = 2 * (p.u * p.v + far * p.uv),
+                 svv = 2 * (p.v * p.v + far * p.vv);
+    const double suuu = 2 * (3 * p.u * p.uu + far * p.uuu),
+                 suuv = 2 * (2 * p.u * p.uv + p.v * p.uu + far * p.uuv),
+                 suvv = 2 * (2 * p.v * p.uv + p.u * p.vv + far * p.uvv),
+                 svvv = 2 * (3 * p.v * p.vv + far * p.vvv);
+    Slopes s;
+    s.u = std::hypot(p.u, f1 * su);
+    s.v = std::hypot(p.v, f1 * sv);
+    s.uu = std::hypot(p.uu, f2 * su * su + f1 * suu);
+    s.uv = std::hypot(p.uv, f2 * su * sv + f1 * suv);
+    s.vv = std::hypot(p.vv, f2 * sv * sv + f1 * svv);
+    s.uuu = std::hypot(p.uuu, f3 * su * su * su + 3 * f2 * su * suu + f1 * suuu);
+    s.uuv = std::hypot(p.uuv, f3 * su * su * sv + f2 * (suu * sv + 2 * su * suv) + f1 * suuv);
+    s.uvv = std::hypot(p.uvv, f3 * su * sv * sv + f2 * (svv * su + 2 * sv * suv) + f1 * suvv);
+    s.vvv = std::hypot(p.vvv, f3 * sv * sv * sv + 3 * f2 * sv * svv + f1 * svvv);
+
+    // The normal is along (-2 f' p, 1), and directions of vectors longer than 1 turn by no more than their
+    // change.
+    s.normal_u = 2 * (f2 * su * far + f1 * p.u);
+    s.normal_v = 2 * (f2 * sv * far + f1 * p.v);
+    return s;
+}
+
+/// Faces as make_lens_surface numbers them: five of each side, then the quarters of the edge.
+Slopes slopes_of(const LensPrimitive& lens, Id face) {
+    if (face < 10) return side_slopes(face < 5 ? lens.front : lens.back, face % 5 == 4);
+    const double wider = lens.back.aperture - lens.front.aperture,
+                 height = lens.thickness + sag_of_rim(lens.back) - sag_of_rim(lens.front);
+    Slopes s;
+    s.u = std::max(lens.front.aperture, lens.back.aperture) * kQuarter;
+    s.uv = std::fabs(wider) * kQuarter;
+    s.uu = s.u * kQuarter;
+    s.uuv = s.uv * kQuarter;
+    s.uuu = s.uu * kQuarter;
+    s.v = std::hypot(wider, height);
+    s.normal_u = kQuarter * height / s.v;
     return s;
 }
 

@@ -1,0 +1,126 @@
+// Lenses by their prescriptions: what lens files say, first order, Seidel's sums, rays and spots.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "python_call.h"
+
+namespace trilens::python {
+namespace {
+
+SpectralLine line_of(const std::string& name) {
+    return require_named<SpectralLine>("line", name);
+}
+
+py::dict first_order_dict(const LensPrescription& lens, const std::string& line) {
+    const FirstOrder first = first_order(lens, line_of(line));
+    py::dict dict;
+    dict["focal_length"] = first.focal_length;
+    dict["back_focal_length"] = first.back_focal_length;
+    dict["front_focus"] = first.front_focus;
+    dict["front_principal"] = first.front_principal;
+    dict["back_principal"] = first.back_principal;
+    dict["entrance_pupil"] = first.entrance_pupil;
+    dict["exit_pupil"] = first.exit_pupil;
+    dict["entrance_radius"] = first.entrance_radius;
+    dict["exit_radius"] = first.exit_radius;
+    dict["f_number"] = first.f_number;
+    dict["length"] = first.length;
+    dict["petzval_radius"] = first.petzval_radius;
+    return dict;
+}
+
+py::dict terms_dict(const SeidelTerms& terms) {
+    py::dict dict;
+    dict["spherical"] = terms.spherical;
+    dict["coma"] = terms.coma;
+    dict["astigmatism"] = terms.astigmatism;
+    dict["petzval"] = terms.petzval;
+    dict["distortion"] = terms.distortion;
+    dict["axial_colour"] = terms.axial_colour;
+    dict["lateral_colour"] = terms.lateral_colour;
+    return dict;
+}
+
+py::dict seidel_dict(const LensPrescription& lens, double pupil_radius, double field_slope) {
+    const SeidelSums seidel = seidel_sums(lens, {pupil_radius, field_slope});
+    py::list rows;
+    for (const SeidelTerms& row : seidel.rows) rows.append(terms_dict(row));
+    py::dict dict;
+    dict["surfaces"] = rows;
+    dict["sum"] = terms_dict(seidel.sum);
+    dict["image_slope"] = seidel.image_slope;
+    dict["image_height"] = seidel.image_height;
+    return dict;
+}
+
+py::dict spot_dict(const LensPrescription& lens, double pupil_radius, double field, const std::string& line,
+                   int rings, double shift) {
+    const Spot spot = spot_of(lens, {pupil_radius, field, line_of(line), rings, shift});
+    py::list points;
+    for (const Vec2& p : spot.points) points.append(py::make_tuple(p.x, p.y));
+    py::dict dict;
+    dict["points"] = points;
+    dict["asked"] = spot.asked;
+    dict["centroid"] = py::make_tuple(spot.centroid.x, spot.centroid.y);
+    dict["rms_radius"] = spot.rms_radius;
+    dict["radius"] = spot.radius;
+    return dict;
+}
+
+py::object traced(const LensPrescription& lens, const Triple& origin, const Triple& direction,
+                  const std::string& line) {
+    const std::optional<Ray> ray = trace_lens(lens, {vec3(origin), vec3(direction)}, line_of(line));
+    if (!ray) return py::none();
+    return py::make_tuple(tuple_of(ray->origin), tuple_of(ray->direction));
+}
+
+}  // namespace
+
+void bind_lens(py::module_& module) {
+    py::class_<LensPrescription>(module, "Lens", "A lens by its prescription: surfaces about one axis.")
+        .def_readonly("name", &LensPrescription::name, "What its file calls it.")
+        .def_property_readonly(
+            "surface_count", [](const LensPrescription& lens) { return lens.rows.size(); },
+            "Surfaces, the stop among them.")
+        .def("first_order", first_order_dict, py::kw_only(), py::arg("line") = "d",
+             "Paraxial quantities at a spectral line (\"C\", \"d\", \"F\"), in the file's units: "
+             "focal_length, "
+             "back_focal_length,\n"
+             "front_focus, front_principal, back_principal, entrance_pupil, exit_pupil (places from the "
+             "first or "
+             "last vertex),\n"
+             "entrance_radius, exit_radius, f_number, length, petzval_radius.\n"
+             "Raises InputError where the lens has no focal length.")
+        .def("seidel", seidel_dict, py::arg("pupil_radius"), py::arg("field_slope"),
+             "Seidel's sums as wavefront aberrations in lengths, object at infinity: of each of the surfaces "
+             "and "
+             "their sum\n"
+             "(spherical, coma, astigmatism, petzval, distortion, axial_colour, lateral_colour), image_slope "
+             "and "
+             "image_height.\n"
+             "Over twice image_slope they are transverse aberrations.")
+        .def(
+            "spot", spot_dict, py::kw_only(), py::arg("pupil_radius") = 0.0, py::arg("field") = 0.0,
+            py::arg("line") = "d", py::arg("rings") = SpotRequest().rings, py::arg("shift") = 0.0,
+            "Where exact rays of a beam from infinity, `field` degrees from the axis, meet the plane `shift` "
+            "behind the\n"
+            "paraxial focus: points, asked (rays sent), centroid, rms_radius, radius. pupil_radius 0: the "
+            "stop's.")
+        .def("trace", traced, py::arg("origin"), py::arg("direction"), py::kw_only(), py::arg("line") = "d",
+             "An exact ray through all surfaces, z along the axis from the first vertex: (origin on the last "
+             "surface, unit\n"
+             "direction), None where it does not come through.")
+        .def("__repr__", [](const LensPrescription& lens) {
+            return "<trilens.Lens \"" + lens.name + "\" " + std::to_string(lens.rows.size()) + " surfaces>";
+        });
+    module.def(
+        "load_lens", [](const std::filesystem::path& file) { return load_lens(file.string()); },
+        py::arg("file"),
+        "The lens of a Zemax file (.zmx), a CODE V sequence (.seq), or JSON with surfaces.\n"
+        "Raises InputError with the file and the line of what cannot be read.");
+    module.def("glass_names", glass_names, "The names of the catalogue of glasses.");
+}
+
+}  // namespace trilens::python

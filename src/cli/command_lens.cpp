@@ -1,0 +1,169 @@
+// trilens lens: the first-order quantities of a lens file, its Seidel sums, and the spots of its beams.
+#include <trilens/surface.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "cli/commands.h"
+#include "cli/print/print.h"
+#include "terminal/libraries.h"
+
+namespace trilens {
+namespace {
+
+struct LensOptions {
+    std::string lens, output;
+    std::string line = "d";
+    double field = 0, pupil = 0, shift = 0;
+    int rings = SpotRequest().rings;
+};
+
+/// Null where it is infinite: JSON has no such number.
+Json length_json(double length) {
+    return std::isfinite(length) ? Json(length) : Json();
+}
+
+Json first_order_json(const FirstOrder& first) {
+    return {{"focal_length", first.focal_length},
+            {"back_focal_length", first.back_focal_length},
+            {"front_focus", first.front_focus},
+            {"front_principal", first.front_principal},
+            {"back_principal", first.back_principal},
+            {"entrance_pupil", length_json(first.entrance_pupil)},
+            {"exit_pupil", length_json(first.exit_pupil)},
+            {"entrance_radius", length_json(first.entrance_radius)},
+            {"exit_radius", length_json(first.exit_radius)},
+            {"f_number", length_json(first.f_number)},
+            {"length", first.length},
+            {"petzval_radius", length_json(first.petzval_radius)}};
+}
+
+Json terms_json(const SeidelTerms& terms) {
+    return {{"spherical", terms.spherical},          {"coma", terms.coma},
+            {"astigmatism", terms.astigmatism},      {"petzval", terms.petzval},
+            {"distortion", terms.distortion},        {"axial_colour", terms.axial_colour},
+            {"lateral_colour", terms.lateral_colour}};
+}
+
+/// As transverse aberrations: `scale` of the sums, and twice that of the chromatic ones.
+std::string terms_line(const std::string& name, const SeidelTerms& t, double scale) {
+    std::string text = fmt::format("{:>7}", name);
+    for (const double sum : {t.spherical, t.coma, t.astigmatism, t.petzval, t.distortion, 2 * t.axial_colour,
+                             2 * t.lateral_colour})
+        text += fmt::format(" {:10.6f}", sum * scale + 0.0);  // never -0
+    return text + "\n";
+}
+
+std::string first_order_text(const LensPrescription& lens, const FirstOrder& first) {
+    std::string text =
+        fmt::format("{}: {} surfaces, length {:.6g}\n", lens.name, lens.rows.size(), first.length);
+    text += fmt::format("focal length {:.6g}, back focal length {:.6g}", first.focal_length,
+                        first.back_focal_length);
+    if (first.f_number > 0) text += fmt::format(", f/{:.3g}", first.f_number);
+    text += fmt::format("\nprincipal planes {:.6g} behind the first vertex, {:.6g} behind the last\n",
+                        first.front_principal, first.back_principal);
+    text += fmt::format("entrance pupil {:.6g} behind the first vertex, radius {:.6g}\n",
+                        first.entrance_pupil, first.entrance_radius);
+    text += fmt::format("exit pupil {:.6g} behind the last vertex, radius {:.6g}\n", first.exit_pupil,
+                        first.exit_radius);
+    return text + fmt::format("Petzval radius {:.6g}\n", first.petzval_radius);
+}
+
+/// As transverse aberrations in the paraxial focus, the form of published tables.
+std::string seidel_text(const SeidelSums& seidel) {
+    const double scale = 1 / (2 * seidel.image_slope);
+    std::string text =
+        fmt::format("\n{:>7} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "surface", "spherical",
+                    "coma", "astigm.", "Petzval", "distort.", "axial c.", "lateral c.");
+    for (std::size_t i = 0; i < seidel.rows.size(); ++i)
+        text += terms_line(std::to_string(i + 1), seidel.rows[i], scale);
+    return text + terms_line("sum", seidel.sum, scale);
+}
+
+Answer run(const LensOptions& options, Console& console) {
+    console.files().reads({options.lens});
+    const LensPrescription lens = load_lens(options.lens);
+    const SpectralLine line = *find_named<SpectralLine>(options.line);
+    const FirstOrder first = first_order(lens, line);
+    Answer answer;
+    answer.fields["lens"] = lens.name;
+    answer.fields["line"] = options.line;
+    answer.fields["first_order"] = first_order_json(first);
+    answer.text = first_order_text(lens, first);
+
+    const double pupil = options.pupil > 0 ? options.pupil : first.entrance_radius;
+    if (!(pupil > 0) || !std::isfinite(pupil)) {
+        console.warn("the stop has no aperture: give --pupil for aberrations and spots");
+        return answer;
+    }
+    const double slope = std::tan(options.field * std::numbers::pi / 180);
+    const SeidelSums seidel = seidel_sums(lens, {pupil, slope});
+    Json& sums = answer.fields["seidel"];
+    sums = {{"pupil_radius", pupil},
+            {"field_degrees", options.field},
+            {"image_slope", seidel.image_slope},
+            {"image_height", seidel.image_height},
+            {"sum", terms_json(seidel.sum)},
+            {"surfaces", Json::array()}};
+    for (const SeidelTerms& row : seidel.rows) sums["surfaces"].push_back(terms_json(row));
+    answer.text += seidel_text(seidel);
+
+    const Spot spot = spot_of(lens, {pupil, options.field, line, options.rings, options.shift});
+    answer.fields["spot"] = {{"rays", spot.points.size()},
+                             {"asked", spot.asked},
+                             {"centroid", {spot.centroid.x, spot.centroid.y}},
+                             {"rms_radius", spot.rms_radius},
+                             {"radius", spot.radius}};
+    answer.text += fmt::format("\nspot of {} of {} rays: rms radius {:.4g}, radius {:.4g}, at {:.6g}\n",
+                               spot.points.size(), spot.asked, spot.rms_radius, spot.radius, spot.centroid.y);
+    if (options.output.empty()) return answer;
+    std::string table = "x,y\n";
+    for (const Vec2& p : spot.points) table += fmt::format("{},{}\n", p.x, p.y);
+    const Answer written = write_output(options.output, table, console);
+    answer.fields.update(written.fields);
+    if (is_standard_stream(options.output)) answer.text = written.text;
+    return answer;
+}
+
+}  // namespace
+
+Command lens_command() {
+    auto options = std::make_shared<LensOptions>();
+    Command command{.name = "lens",
+                    .summary = "a lens file's focal length, pupils, Seidel sums, and spots of real rays",
+                    .schema = "lens"};
+    command.options = {{.names = "LENS",
+                        .target = &options->lens,
+                        .help = "a Zemax file (.zmx), a CODE V sequence (.seq), or JSON with surfaces",
+                        .offer = Offer::kFile,
+                        .is_required = true},
+                       {.names = "--field",
+                        .target = &options->field,
+                        .help = "degrees from the axis of the chief ray and of the spot's beam",
+                        .range = {-89, 89}},
+                       {.names = "--pupil",
+                        .target = &options->pupil,
+                        .help = "radius of the beam in the entrance pupil; without it, the stop's",
+                        .range = {0, 1e9}},
+                       {.names = "--line",
+                        .target = &options->line,
+                        .help = "the spectral line of first order and spot",
+                        .choices = names_of<SpectralLine>()},
+                       {.names = "--rings",
+                        .target = &options->rings,
+                        .help = "rings of rays in the spot's beam",
+                        .range = {1, 200}},
+                       {.names = "--shift",
+                        .target = &options->shift,
+                        .help = "the spot's plane behind the paraxial focus",
+                        .range = {-1e9, 1e9}},
+                       {.names = "-o,--output",
+                        .target = &options->output,
+                        .help = "x,y of the spot's rays, one per line",
+                        .value = "SPOT.csv",
+                        .offer = Offer::kFile}};
+    command.body = [options](Console& console) { return run(*options, console); };
+    return command;
+}
+
+}  // namespace trilens

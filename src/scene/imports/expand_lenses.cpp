@@ -1,0 +1,132 @@
+#include "scene/imports/expand_lenses.h"
+
+#include <algorithm>
+#include <set>
+
+#include "json/schema.h"
+#include "scene/read/read_lens.h"
+
+namespace trilens {
+namespace {
+
+/// KHR_materials_dispersion's number is 20 over Abbe's.
+constexpr double kDispersionTimesAbbe = 20;
+
+/// How far a stop's ring reaches beyond the lens.
+constexpr double kRingReach = 1.25;
+constexpr int kRingSegments = 128;
+
+void check_lenses(const Json& scene, const std::string& file) {
+    const Json& whole = scene_schema_json();
+    const Json alone{{"definitions", whole.at("definitions")},
+                     {"title", "a scene"},
+                     {"type", "object"},
+                     {"properties", {{"lenses", whole.at("properties").at("lenses")}}}};
+    if (const auto found = find_problem(Json{{"lenses", scene.at("lenses")}}, alone))
+        fail_at(file, found->place, found->message);
+}
+
+Json side_json(const LensSide& side) {
+    Json json = Json::object();
+    if (side.curvature != 0) json["radius"] = 1 / side.curvature;
+    if (side.conic != 0) json["conic"] = side.conic;
+    if (!is_conicoid(side)) json["coefficients"] = side.coefficients;
+    json["aperture"] = side.aperture;
+    return json;
+}
+
+Json material_json(const std::string& name, const Glass& glass, bool disperses) {
+    Json material{{"name", name}, {"transmissionFactor", 1}, {"ior", glass.index}};
+    if (disperses && glass.abbe > 0) material["dispersion"] = kDispersionTimesAbbe / glass.abbe;
+    return material;
+}
+
+/// One lens' meshes and materials, added to the scene's.
+class Expansion {
+  public:
+    Expansion(const Node& node, const ReadLens& lens, Json& scene)
+        : node_(node), lens_(lens), scene_(scene) {}
+
+    void add_bodies() {
+        std::set<std::string> known;
+        const std::vector<LensElement> elements = lens_elements(lens_.prescription);
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            const LensElement& element = elements[i];
+            const std::string glass = lens_.name + "/" + element.glass.name;
+            if (known.insert(glass).second)
+                scene_["materials"].push_back(material_json(glass, element.glass, lens_.dispersion));
+            Json mesh{{"name", lens_.name + "/" + std::to_string(i + 1)},
+                      {"role", "optic"},
+                      {"material", glass},
+                      {"resolution", lens_.resolution}};
+            mesh["primitive"] = {{"type", "lens"},
+                                 {"center", {0, 0, element.z}},
+                                 {"axis", {0, 0, 1}},
+                                 {"thickness", element.shape.thickness},
+                                 {"front", side_json(element.shape.front)},
+                                 {"back", side_json(element.shape.back)}};
+            add(std::move(mesh));
+        }
+    }
+
+    /// False where the stop lies on glass.
+    bool add_stop() {
+        const LensPrescription& lens = lens_.prescription;
+        const auto is_stop = [](const LensRow& row) { return row.stop; };
+        const auto stop = std::find_if(lens.rows.begin(), lens.rows.end(), is_stop);
+        if (stop == lens.rows.end() || !(stop->side.aperture > 0)) return true;
+        const bool in_air = stop->glass.is_air() && (stop == lens.rows.begin() || (stop - 1)->glass.is_air());
+        if (!in_air) return false;
+        double widest = 0;
+        for (const LensRow& row : lens.rows) widest = std::max(widest, row.side.aperture);
+        const std::string name = lens_.name + "/stop";
+        scene_["materials"].push_back({{"name", name}, {"baseColorFactor", {0, 0, 0}}, {"unlit", true}});
+        Json mesh{{"name", name}, {"role", "object"}, {"material", name}};
+        const double z = vertex_of(lens, static_cast<std::size_t>(stop - lens.rows.begin()));
+        mesh["primitive"] = {{"type", "disk"},
+                             {"center", {0, 0, z}},
+                             {"normal", {0, 0, 1}},
+                             {"radius", kRingReach * widest},
+                             {"hole", stop->side.aperture},
+                             {"segments", kRingSegments}};
+        add(std::move(mesh));
+        return true;
+    }
+
+  private:
+    void add(Json mesh) {
+        if (node_.has("transform")) mesh["transform"] = node_["transform"].json;
+        scene_["meshes"].push_back(std::move(mesh));
+    }
+
+    const Node& node_;
+    const ReadLens& lens_;
+    Json& scene_;
+};
+
+}  // namespace
+
+void expand_lenses(Json& scene, Reading& reading) {
+    if (!scene.is_object() || !scene.contains("lenses")) return;
+    check_lenses(scene, reading.file);
+    const Json lenses = scene.at("lenses");
+    scene.erase("lenses");
+    for (const char* list : {"materials", "meshes"}) {
+        if (!scene.contains(list)) scene[list] = Json::array();
+        if (!scene.at(list).is_array()) fail_at(reading.file, std::string("/") + list, "is no array");
+    }
+    for (std::size_t i = 0; i < lenses.size(); ++i) {
+        const Node node{lenses[i], "/lenses/" + std::to_string(i), reading.file};
+        const ReadLens lens = read_lens(node, i, reading);
+        Expansion expansion(node, lens, scene);
+        try {
+            expansion.add_bodies();
+        } catch (const InputError& error) {
+            if (node.has("surfaces")) throw;
+            node["file"].fail(error.what());
+        }
+        if (!expansion.add_stop()) reading.warn(node.place, "its stop lies on glass: no ring is made of it");
+    }
+}
+
+}  // namespace trilens

@@ -1,0 +1,122 @@
+// Lenses as optics: rays through their bodies are those of the prescription, and what is projected through
+// them is what is traced.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "json/json.h"
+#include "laws/agreement.h"
+#include "laws/worlds.h"
+#include "lens/sequential_rays.h"
+#include "measure/displacement/displacement.h"
+#include "render/picture/picture.h"
+#include "render/shoot/shoot.h"
+#include "support/draw.h"
+#include "support/published_lenses.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+std::string scene_of(const LensPrescription& lens) {
+    Json surfaces = Json::array();
+    for (const LensRow& row : lens.rows) {
+        Json one{{"thickness", row.thickness}, {"aperture", row.side.aperture}, {"conic", row.side.conic}};
+        if (row.side.curvature != 0) one["radius"] = 1 / row.side.curvature;
+        if (!is_conicoid(row.side)) one["coefficients"] = row.side.coefficients;
+        if (!row.glass.is_air()) one["ior"] = row.glass.index;
+        if (row.stop) one["stop"] = true;
+        surfaces.push_back(one);
+    }
+    const Json scene{{"version", 1},
+                     {"cameras", {{{"lookAt", {{"eye", {0, 0, -100}}, {"at", {0, 0, 0}}}}}}},
+                     {"lenses", {{{"name", "lens"}, {"surfaces", surfaces}}}}};
+    return scene.dump();
+}
+
+/// A convex hyperboloid before an even asphere, a stop behind.
+LensPrescription aspheric_singlet() {
+    LensPrescription lens{"asphere", "asphere", {}};
+    lens.rows.resize(3);
+    lens.rows[0] = {{0.03, -2, {}, 9}, 6, {"glass", 1.6, 0}};
+    lens.rows[1] = {{-0.01, 0, {0.002, -8e-6, 2e-9}, 9}, 10};
+    lens.rows[2].side.aperture = 7;
+    lens.rows[2].stop = true;
+    return lens;
+}
+
+}  // namespace
+
+TEST_CASE("rays through a lens' bodies are those of its prescription, cemented, aspheric or not",
+          "[lens][law]") {
+    for (const LensPrescription& lens : {cooke_triplet(), double_gauss(), aspheric_singlet()}) {
+        CAPTURE(lens.name);
+        const auto world = world_from("lens", scene_of(lens), 8);
+        std::string word;  // a transmission for each surface of glass
+        for (std::size_t i = 0; i < lens.rows.size(); ++i)
+            if (!lens.rows[i].glass.is_air() || (i > 0 && !lens.rows[i - 1].glass.is_air())) word += 'T';
+        ShootRequest request;
+        request.path = EventWord(word);
+        // So that none comes near the stop's ring, which has corners.
+        LensPrescription narrow = lens;
+        for (LensRow& row : narrow.rows) row.side.aperture *= 0.99;
+        Draw draw(5);
+        std::vector<Ray> rays, ends;
+        while (rays.size() < 300) {
+            const double reach = 0.9 * lens.rows[0].side.aperture;
+            const Vec3 at(draw.uniform(-reach, reach), draw.uniform(-reach, reach), 0);
+            const Vec3 direction = normalize(Vec3(draw.uniform(-0.2, 0.2), draw.uniform(-0.2, 0.2), 1));
+            const Ray ray{at - 60.0 * direction, direction};
+            const auto end = trace_lens(narrow, ray);
+            if (!end) continue;
+            rays.push_back(ray);
+            ends.push_back(*end);
+        }
+        const ShotRays shots = shoot_rays(*world, request, rays);
+        double worst = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const ShotRay& shot = shots.rays[i];
+            REQUIRE(shot.followed());
+            // Their lines: directions, and how far one passes by the other's start.
+            const Vec3 off = shot.origin - ends[i].origin;
+            const double aside = length(off - dot(off, ends[i].direction) * ends[i].direction);
+            worst = std::max({worst, length(shot.direction - ends[i].direction), aside / 100});
+        }
+        CHECK(worst < 1e-11);
+    }
+}
+
+TEST_CASE("the triplet shows the same projected as traced", "[lens][law]") {
+    std::string missing;
+    const auto world = shipped_world("lenses/cooke-triplet", 8, 160, 120, &missing);
+    REQUIRE(world);
+    CHECK(world->scene.meshes.size() == 7);
+    PictureRequest request;
+    const Image drawn = draw_picture(*world, request, {}, ignore).image;
+    request.engine = Engine::kLimitTruth;
+    const Image truth = draw_picture(*world, request, {}, ignore).image;
+    const auto found = measure_displacement(truth, drawn, "refract");
+    REQUIRE(found);
+    REQUIRE(found->summary);
+    CHECK(found->pixels > 500);
+    CHECK(found->summary->p95 < 0.5);
+    CHECK(found->lost <= found->pixels / 100);
+}
+
+TEST_CASE("a lens as an optic and the facets' own rays show the same", "[lens][law]") {
+    const std::string json = R"({"version": 1, "film": {"width": 80, "height": 60},
+        "cameras": [{"name": "main", "yfov": 40, "lookAt": {"eye": [0.4, 0.3, 4], "at": [0, 0, 0]}}],
+        "materials": [{"name": "glass", "transmissionFactor": 1, "ior": 1.6}],
+        "meshes": [{"name": "lens", "role": "optic", "material": "glass", "primitive": {"type": "lens", "axis": [0.1, 0.2, 1],
+            "thickness": 0.7, "front": {"radius": 2, "aperture": 0.9}, "back": {"radius": -1.8, "conic": -0.5, "coefficients": [0, 0.01],
+            "aperture": 1}}},
+            {"name": "box", "role": "object", "primitive": {"type": "box", "center": [0.5, 0.2, -3], "size": [1.5, 1, 0.6]}},
+            {"name": "wall", "role": "object", "primitive": {"type": "plane", "center": [0, 0, -6], "normal": [0, 0, 1], "size": [9, 7]}}]})";
+    const auto world = world_from("lens", json, 6);
+    const Agreement agreement = compare_engines(*world);
+    INFO(agreement.first_off_edge);
+    CHECK(agreement.optic_pixels > 500);
+    CHECK(agreement.off_edge == 0);
+}

@@ -1,0 +1,63 @@
+"""Lenses by their prescriptions, from Python and by the command."""
+import csv
+import math
+
+import pytest
+
+import trilens
+from conftest import SOURCE
+
+TRIPLET = SOURCE / "scenes/lenses/cooke-triplet.zmx"
+GAUSS = SOURCE / "scenes/lenses/double-gauss.seq"
+
+
+def test_first_order_and_seidel_sums_are_the_published_ones():
+    triplet = trilens.load_lens(TRIPLET)
+    assert (triplet.name, triplet.surface_count) == ("Cooke triplet, f/3.5", 7)
+    assert triplet.first_order()["focal_length"] == pytest.approx(101.181, abs=5e-4)
+    sums = triplet.seidel(14.6, 0.21)
+    assert sums["surfaces"][2]["spherical"] / (2 * sums["image_slope"]) == pytest.approx(2.049816, abs=1e-5)
+    assert sums["sum"]["distortion"] / (2 * sums["image_slope"]) == pytest.approx(0.142422, abs=1e-5)
+    assert trilens.load_lens(GAUSS).first_order()["back_focal_length"] == pytest.approx(56.424, abs=2e-3)
+    assert {"N-BK7", "N-SF11", "F2"} <= set(trilens.glass_names())
+
+
+def test_a_ray_near_the_axis_crosses_it_in_the_focus():
+    triplet = trilens.load_lens(TRIPLET)
+    first = triplet.first_order()
+    (x, y, z), (dx, dy, dz) = triplet.trace((0, 1e-3, -1), (0, 0, 1))
+    assert z - y * dz / dy == pytest.approx(first["length"] + first["back_focal_length"], abs=1e-6)
+    assert triplet.trace((0, 20, -1), (0, 0, 1)) is None
+
+
+def test_the_command_tells_what_python_tells(command, tmp_path):
+    spot = tmp_path / "spot.csv"
+    run, answer = command("lens", TRIPLET, "--field", "6", "-o", spot)
+    triplet = trilens.load_lens(TRIPLET)
+    assert answer["first_order"] == triplet.first_order()
+    found = triplet.spot(field=6)
+    assert answer["spot"]["rms_radius"] == found["rms_radius"]
+    with spot.open(newline="") as rows:
+        points = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(rows)]
+    assert points == found["points"]
+    slope = math.tan(math.radians(6))
+    sums = triplet.seidel(triplet.first_order()["entrance_radius"], slope)["sum"]
+    assert answer["seidel"]["sum"] == pytest.approx(sums, rel=1e-12)
+
+
+def test_a_lens_primitive_has_its_sides():
+    lens = trilens.primitive_surface("lens", axis=(0, 0, 1), thickness=0.5, front=(4, 1), back=(-4, 0.9, -1, 0, 0.001))
+    assert lens.face_count == 14
+    with pytest.raises(trilens.InputError, match="turns back"):
+        trilens.primitive_surface("lens", front=(1, 1))
+    with pytest.raises(trilens.UsageError, match="front is"):
+        trilens.primitive_surface("lens", front=(1,))
+
+
+def test_unknown_glass_is_refused_with_its_line(tmp_path):
+    file = tmp_path / "bad.zmx"
+    file.write_text(TRIPLET.read_text().replace("SF2", "SF22"))
+    with pytest.raises(trilens.InputError, match="line [0-9]+: unknown glass 'SF22'; did you mean"):
+        trilens.load_lens(file)
+    with pytest.raises(trilens.InputError, match="/lenses/0/file: .*unknown glass 'SF22'"):
+        trilens.load_scene(SOURCE / "scenes/lenses/cooke-triplet.json", {"/lenses/0/file": str(file)})
