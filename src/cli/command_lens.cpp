@@ -1,4 +1,5 @@
 // trilens lens: the first-order quantities of a lens file, its Seidel sums, and the spots of its beams.
+#include <trilens/scene.h>
 #include <trilens/surface.h>
 
 #include <cmath>

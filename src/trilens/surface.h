@@ -1,6 +1,7 @@
 // Curved surfaces: limit surfaces of cages, exact primitives, and N x N grids on them; and lenses by their
 // prescriptions: first order, Seidel's sums, exact rays and spots.
 //
+//     #include <trilens/scene.h>
 //     trilens::Cage cage;
 //     cage.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
 //     cage.face_vertex_counts = {4};
