@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "surfaces/primitive_shapes.h"
 #include "surfaces/primitives/disk_map.h"
 #include "surfaces/primitives/primitive_bounds.h"
-#include "surfaces/primitive_shapes.h"
 
 namespace trilens {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "base/util/error.h"
 #include "surfaces/lens_surface.h"
-#include "surfaces/primitives/primitive_bounds.h"
 #include "surfaces/primitive_shapes.h"
+#include "surfaces/primitives/primitive_bounds.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
