@@ -140,7 +140,7 @@ TEST_CASE("wrong types and ranges and lengths", "[scene]") {
          "/meshes/1/primitive/radius: 0 is out of range: must be greater than 0"},
         {"/meshes/1/primitive/type", "torus",
          "/meshes/1/primitive/type: unknown value 'torus'; known: sphere, paraboloid, cylinder, cone, plane, "
-         "box, disk"},
+         "lens, box, disk"},
         {"/meshes/2/role", "mirror", "/meshes/2/role: unknown value 'mirror'; known: object, optic, terrain"},
         {"/lights/1/position", "null", "/lights/1/position: expected an array, found null"},
         {"/lights/0/intensity", "-1", "/lights/0/intensity: -1 is out of range: must be at least 0"},

@@ -20,6 +20,7 @@ struct LensSide {
     double aperture = 1;  // radius of the rim
 };
 
+/// Whether no coefficient adds to the conicoid.
 inline bool is_conicoid(const LensSide& side) {
     return std::all_of(side.coefficients.begin(), side.coefficients.end(), [](double a) { return a == 0; });
 }
@@ -66,6 +67,7 @@ inline Sag sag_at(const LensSide& side, double s) {
     return sag;
 }
 
+/// z at the aperture; as sag_at.
 inline double sag_of_rim(const LensSide& side) {
     return sag_at(side, side.aperture * side.aperture).z;
 }
