@@ -29,7 +29,7 @@ def write_python(folder, out):
         """A docstring's parameters as a list."""
         text = re.sub(r"\n[ \t]+", " ", text)
         text = re.sub(r"(?m)^(Raises|Returns) ", r"\n\1 ", text)
-        return re.sub(r"(?m)^((?:[\w\\]+(?:, )?)+: )", r"\n- \1", text)
+        return re.sub(r"(?m)^([\w\\]+(?:, [\w\\]+)*: )", r"\n- \1", text)
 
     def signature(node, width=10000):
         arguments = ast.unparse(node.args).replace("self, ", "").replace("self", "")

@@ -143,12 +143,13 @@ Field<T> either(const std::string& key, bool T::*member, const std::array<const 
     return field;
 }
 
-/// A setting of a T's own part.
+/// A setting of a T's own part; one that is read by hand stays so.
 template <typename T, typename U>
 Field<T> within(U T::*outer, Field<U> inner) {
     Field<T> field;
     static_cast<FieldSchema&>(field) = inner;
-    field.read = [outer, read = inner.read](const Json& json, T& into) { read(json, into.*outer); };
+    if (inner.read)
+        field.read = [outer, read = inner.read](const Json& json, T& into) { read(json, into.*outer); };
     return field;
 }
 

@@ -7,7 +7,7 @@
 //
 //     #include <trilens/ceres.h>
 //     trilens::CeresImages images(trilens::load_scene({"scene.json"}), {"/meshes/0/primitive/radius"});
-//     images.add({.pixel = {75.6, 60.6}, .point = {-1.55, 0.9, 1.2}});
+//     images.add({.pixel = {24.1, 25.4}, .point = {-1.55, 0.9, 1.2}});
 //     ceres::Problem::Options options;
 //     options.evaluation_callback = &images;
 //     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -83,6 +83,7 @@ void enter(const fs::path& folder) {
         {"/film/width", "64"}, {"/film/height", "48"}, {"/film/spp", "1"}};
     const trilens::Scene scene = trilens::parse_scene(trilens::scene_examples()[0].json, "", small);
     for (const char* name : {"scene.json", "my.json"}) trilens::replace_text_file(name, scene.resolved);
+    fs::copy(TRILENS_SCENES "/lenses/cooke-triplet.zmx", "triplet.zmx");
     fs::create_directories("tests/render/ball");
     trilens::replace_text_file("tests/render/ball/test.json",
                                R"({ "scene": "../../../scene.json", "against": "truth", "resolution": 8,

@@ -73,7 +73,6 @@ const std::vector<Field<WrittenRow>>& row_fields() {
         std::vector<Field<WrittenRow>> list;
         for (const Field<WrittenSide>& field : side_fields()) {
             list.push_back(within(&WrittenRow::side, field));
-            if (!field.read) list.back().read = {};  // by hand, here too
             if (field.key == "aperture") list.back().schema.erase("default");
         }
         list.push_back(setting("thickness", &WrittenRow::thickness, ref("notNegative"),
