@@ -152,6 +152,8 @@ TEST_CASE("lens files of what is no lens are refused with their line", "[scene][
     CHECK(refusal(zemax_text("DISZ 4", "DISZ INFINITY")) == "a.zmx: line 5: what follows is at infinity");
     CHECK(refusal(zemax_text("SURF 2", "SURF 4")) == "a.zmx: line 12: surfaces do not follow each other");
     CHECK(refusal(zemax_text("PARM 2", "PARM 9")) == "a.zmx: line 17: PARM 9 is not of an even asphere");
+    CHECK(refusal(zemax_text("PARM 2", "PARM 1e300")) ==
+          "a.zmx: line 17: PARM 1e300 is not of an even asphere");
     CHECK(refusal(zemax_text("MODE SEQ", "MODE NSC")).starts_with("a.zmx: line 1: is a system of mode NSC"));
     CHECK(refusal(zemax_text("DIAM 10", "DIAM -10")) == "a.zmx: line 11: DIAM is negative");
     CHECK(refusal("hello\n") == "a.zmx: has no line SURF: it is no Zemax lens file");

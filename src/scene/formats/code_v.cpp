@@ -1,14 +1,12 @@
 // Reads what CODE V's sequences say of their surfaces: commands between semicolons, lines that go on after
 // '&'.
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "base/util/error.h"
 #include "scene/formats/lens_file.h"
-#include "scene/formats/line_scanner.h"
+#include "scene/formats/lens_lines.h"
 
 namespace trilens {
 namespace {
@@ -21,9 +19,9 @@ constexpr std::string_view kRefused[] = {"XDE",  "YDE", "ZDE", "ADE", "BDE", "CD
 /// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
 constexpr std::string_view kTerms = "ABCDEFG";
 
-class SequenceReader {
+class SequenceReader : LensLines {
   public:
-    SequenceReader(const std::string& text, const std::string& file) : text_(text) { lens_.file = file; }
+    SequenceReader(const std::string& text, const std::string& file) : LensLines(file), text_(text) {}
 
     LensPrescription read() {
         std::string command;
@@ -49,11 +47,6 @@ class SequenceReader {
     }
 
   private:
-    std::string place() const { return "line " + std::to_string(line_); }
-    [[noreturn]] void fail(const std::string& message) const {
-        throw InputError(lens_.file, place(), message);
-    }
-
     void take_all(const std::string& commands) {
         for (std::size_t at = 0; at <= commands.size();) {
             const std::size_t end = std::min(commands.find(';', at), commands.size());
@@ -62,18 +55,6 @@ class SequenceReader {
             if (!words.empty()) take(one, words);
             at = end + 1;
         }
-    }
-
-    double number(const std::vector<std::string_view>& words, std::size_t index) const {
-        const std::string key(words[0]);
-        if (index >= words.size()) fail(key + " needs a number");
-        std::string text(words[index]);
-        for (char& letter : text)  // Fortran's exponents
-            if (letter == 'd' || letter == 'D') letter = 'E';
-        const std::optional<double> value = parse_number(text);
-        if (!value || !std::isfinite(*value))
-            fail(key + " needs a number, not \"" + std::string(words[index]) + "\"");
-        return *value;
     }
 
     void take(std::string_view command, const std::vector<std::string_view>& words) {
@@ -154,9 +135,7 @@ class SequenceReader {
     }
 
     const std::string& text_;
-    LensPrescription lens_;
     bool by_curvature_ = false, in_lens_ = false, ended_ = false;
-    std::size_t line_ = 0;
 };
 
 }  // namespace

@@ -1,11 +1,10 @@
 // Reads what Zemax' sequential files say of their surfaces, line by line.
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "base/util/error.h"
 #include "scene/formats/lens_file.h"
-#include "scene/formats/line_scanner.h"
+#include "scene/formats/lens_lines.h"
 
 namespace trilens {
 namespace {
@@ -46,9 +45,9 @@ std::string utf8_of_utf16(const std::string& bytes) {
     return text;
 }
 
-class ZemaxReader {
+class ZemaxReader : LensLines {
   public:
-    ZemaxReader(const std::string& text, const std::string& file) : text_(text) { lens_.file = file; }
+    ZemaxReader(const std::string& text, const std::string& file) : LensLines(file), text_(text) {}
 
     LensPrescription read() {
         for (std::size_t at = 0; at < text_.size();) {
@@ -65,20 +64,6 @@ class ZemaxReader {
     }
 
   private:
-    std::string place() const { return "line " + std::to_string(line_); }
-    [[noreturn]] void fail(const std::string& message) const {
-        throw InputError(lens_.file, place(), message);
-    }
-
-    double number(const std::vector<std::string_view>& words, std::size_t index) const {
-        const std::string key(words[0]);
-        if (index >= words.size()) fail(key + " needs a number");
-        const std::optional<double> value = parse_number(words[index]);
-        if (!value || !std::isfinite(*value))
-            fail(key + " needs a number, not \"" + std::string(words[index]) + "\"");
-        return *value;
-    }
-
     void take(std::string_view line) {
         const std::vector<std::string_view> words = split_words(line);
         if (words.empty()) return;
@@ -115,18 +100,19 @@ class ZemaxReader {
             surface.far = words.size() > 1 && words[1] == "INFINITY";
             if (!surface.far) row.thickness = number(words, 1);
         } else if (key == "PARM") {
-            take_parameter(number(words, 1), number(words, 2), row.side);
+            take_parameter(words, row.side);
         } else if (key == "GLAS") {
             row.glass = glass(words);
         }
     }
 
     /// Of even aspheres; surfaces of other types that are read have none.
-    void take_parameter(double index, double value, LensSide& side) const {
+    void take_parameter(const std::vector<std::string_view>& words, LensSide& side) const {
+        const double index = number(words, 1), value = number(words, 2);
         if (index >= 1 && index <= static_cast<double>(kAsphereTerms) && index == std::floor(index))
             side.coefficients[static_cast<std::size_t>(index) - 1] = value;
         else if (value != 0)
-            fail("PARM " + std::to_string(static_cast<int>(index)) + " is not of an even asphere");
+            fail("PARM " + std::string(words[1]) + " is not of an even asphere");
     }
 
     /// By name; a model glass has its index and Abbe number in the line.
@@ -150,9 +136,7 @@ class ZemaxReader {
     }
 
     const std::string& text_;
-    LensPrescription lens_;
     std::vector<ZemaxSurface> surfaces_;
-    std::size_t line_ = 0;
 };
 
 }  // namespace
