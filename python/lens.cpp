@@ -13,43 +13,24 @@ SpectralLine line_of(const std::string& name) {
     return require_named<SpectralLine>("line", name);
 }
 
-py::dict first_order_dict(const LensPrescription& lens, const std::string& line) {
-    const FirstOrder first = first_order(lens, line_of(line));
+template <typename T, std::size_t kCount>
+py::dict numbers_dict(const T& of, const std::array<NamedNumber<T>, kCount>& numbers) {
     py::dict dict;
-    dict["focal_length"] = first.focal_length;
-    dict["back_focal_length"] = first.back_focal_length;
-    dict["front_focus"] = first.front_focus;
-    dict["front_principal"] = first.front_principal;
-    dict["back_principal"] = first.back_principal;
-    dict["entrance_pupil"] = first.entrance_pupil;
-    dict["exit_pupil"] = first.exit_pupil;
-    dict["entrance_radius"] = first.entrance_radius;
-    dict["exit_radius"] = first.exit_radius;
-    dict["f_number"] = first.f_number;
-    dict["length"] = first.length;
-    dict["petzval_radius"] = first.petzval_radius;
+    for (const auto& [name, number] : numbers) dict[name] = of.*number;
     return dict;
 }
 
-py::dict terms_dict(const SeidelTerms& terms) {
-    py::dict dict;
-    dict["spherical"] = terms.spherical;
-    dict["coma"] = terms.coma;
-    dict["astigmatism"] = terms.astigmatism;
-    dict["petzval"] = terms.petzval;
-    dict["distortion"] = terms.distortion;
-    dict["axial_colour"] = terms.axial_colour;
-    dict["lateral_colour"] = terms.lateral_colour;
-    return dict;
+py::dict first_order_dict(const LensPrescription& lens, const std::string& line) {
+    return numbers_dict(first_order(lens, line_of(line)), kFirstOrderNumbers);
 }
 
 py::dict seidel_dict(const LensPrescription& lens, double pupil_radius, double field_slope) {
     const SeidelSums seidel = seidel_sums(lens, {pupil_radius, field_slope});
     py::list rows;
-    for (const SeidelTerms& row : seidel.rows) rows.append(terms_dict(row));
+    for (const SeidelTerms& row : seidel.rows) rows.append(numbers_dict(row, kSeidelNumbers));
     py::dict dict;
     dict["surfaces"] = rows;
-    dict["sum"] = terms_dict(seidel.sum);
+    dict["sum"] = numbers_dict(seidel.sum, kSeidelNumbers);
     dict["image_slope"] = seidel.image_slope;
     dict["image_height"] = seidel.image_height;
     return dict;
@@ -85,21 +66,15 @@ void bind_lens(py::module_& module) {
             "surface_count", [](const LensPrescription& lens) { return lens.rows.size(); },
             "Surfaces, the stop among them.")
         .def("first_order", first_order_dict, py::kw_only(), py::arg("line") = "d",
-             "Paraxial quantities at a spectral line (\"C\", \"d\", \"F\"), in the file's units: "
-             "focal_length, "
-             "back_focal_length,\n"
-             "front_focus, front_principal, back_principal, entrance_pupil, exit_pupil (places from the "
-             "first or "
-             "last vertex),\n"
+             "Paraxial quantities at a spectral line (\"C\", \"d\", \"F\"), in the file's units:\n"
+             "focal_length, back_focal_length, front_focus, front_principal, back_principal,\n"
+             "entrance_pupil, exit_pupil (places from the first or last vertex),\n"
              "entrance_radius, exit_radius, f_number, length, petzval_radius.\n"
              "Raises InputError where the lens has no focal length.")
         .def("seidel", seidel_dict, py::arg("pupil_radius"), py::arg("field_slope"),
-             "Seidel's sums as wavefront aberrations in lengths, object at infinity: of each of the surfaces "
-             "and "
-             "their sum\n"
-             "(spherical, coma, astigmatism, petzval, distortion, axial_colour, lateral_colour), image_slope "
-             "and "
-             "image_height.\n"
+             "Seidel's sums as wavefront aberrations in lengths, object at infinity: of each of the\n"
+             "surfaces and their sum (spherical, coma, astigmatism, petzval, distortion,\n"
+             "axial_colour, lateral_colour), image_slope and image_height.\n"
              "Over twice image_slope they are transverse aberrations.")
         .def(
             "spot", spot_dict, py::kw_only(), py::arg("pupil_radius") = 0.0, py::arg("field") = 0.0,

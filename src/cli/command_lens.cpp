@@ -2,6 +2,7 @@
 #include <trilens/scene.h>
 #include <trilens/surface.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -19,31 +20,13 @@ struct LensOptions {
     int rings = SpotRequest().rings;
 };
 
-/// Null where it is infinite: JSON has no such number.
-Json length_json(double length) {
-    return std::isfinite(length) ? Json(length) : Json();
-}
-
-Json first_order_json(const FirstOrder& first) {
-    return {{"focal_length", first.focal_length},
-            {"back_focal_length", first.back_focal_length},
-            {"front_focus", first.front_focus},
-            {"front_principal", first.front_principal},
-            {"back_principal", first.back_principal},
-            {"entrance_pupil", length_json(first.entrance_pupil)},
-            {"exit_pupil", length_json(first.exit_pupil)},
-            {"entrance_radius", length_json(first.entrance_radius)},
-            {"exit_radius", length_json(first.exit_radius)},
-            {"f_number", length_json(first.f_number)},
-            {"length", first.length},
-            {"petzval_radius", length_json(first.petzval_radius)}};
-}
-
-Json terms_json(const SeidelTerms& terms) {
-    return {{"spherical", terms.spherical},          {"coma", terms.coma},
-            {"astigmatism", terms.astigmatism},      {"petzval", terms.petzval},
-            {"distortion", terms.distortion},        {"axial_colour", terms.axial_colour},
-            {"lateral_colour", terms.lateral_colour}};
+/// Null where one is infinite: JSON has no such number.
+template <typename T, std::size_t kCount>
+Json numbers_json(const T& of, const std::array<NamedNumber<T>, kCount>& numbers) {
+    Json json;
+    for (const auto& [name, number] : numbers)
+        json[name] = std::isfinite(of.*number) ? Json(of.*number) : Json();
+    return json;
 }
 
 /// As transverse aberrations: `scale` of the sums, and twice that of the chromatic ones.
@@ -89,7 +72,7 @@ Answer run(const LensOptions& options, Console& console) {
     Answer answer;
     answer.fields["lens"] = lens.name;
     answer.fields["line"] = options.line;
-    answer.fields["first_order"] = first_order_json(first);
+    answer.fields["first_order"] = numbers_json(first, kFirstOrderNumbers);
     answer.text = first_order_text(lens, first);
 
     const double pupil = options.pupil > 0 ? options.pupil : first.entrance_radius;
@@ -104,9 +87,9 @@ Answer run(const LensOptions& options, Console& console) {
             {"field_degrees", options.field},
             {"image_slope", seidel.image_slope},
             {"image_height", seidel.image_height},
-            {"sum", terms_json(seidel.sum)},
+            {"sum", numbers_json(seidel.sum, kSeidelNumbers)},
             {"surfaces", Json::array()}};
-    for (const SeidelTerms& row : seidel.rows) sums["surfaces"].push_back(terms_json(row));
+    for (const SeidelTerms& row : seidel.rows) sums["surfaces"].push_back(numbers_json(row, kSeidelNumbers));
     answer.text += seidel_text(seidel);
 
     const Spot spot = spot_of(lens, {pupil, options.field, line, options.rings, options.shift});

@@ -24,13 +24,7 @@ double figuring(const LensSide& side) {
 }
 
 SeidelTerms& operator+=(SeidelTerms& sum, const SeidelTerms& one) {
-    sum.spherical += one.spherical;
-    sum.coma += one.coma;
-    sum.astigmatism += one.astigmatism;
-    sum.petzval += one.petzval;
-    sum.distortion += one.distortion;
-    sum.axial_colour += one.axial_colour;
-    sum.lateral_colour += one.lateral_colour;
+    for (const auto& [name, number] : kSeidelNumbers) sum.*number += one.*number;
     return sum;
 }
 

@@ -2,11 +2,19 @@
 // Systems, 1986, chapters 6 and 8). Objects are at infinity, air is on both sides.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "lens/prescription.h"
 
 namespace trilens {
+
+/// A number of a struct, by the name that JSON and Python have for it.
+template <typename T>
+struct NamedNumber {
+    const char* name;
+    double T::*number;
+};
 
 /// A paraxial ray as it leaves a surface: its height there, and the slope behind it.
 struct ParaxialPlace {
@@ -34,6 +42,20 @@ struct FirstOrder {
     double petzval_radius = 0;  // of the image of a plane at infinity, if it had no astigmatism
 };
 
+inline constexpr std::array<NamedNumber<FirstOrder>, 12> kFirstOrderNumbers{
+    {{"focal_length", &FirstOrder::focal_length},
+     {"back_focal_length", &FirstOrder::back_focal_length},
+     {"front_focus", &FirstOrder::front_focus},
+     {"front_principal", &FirstOrder::front_principal},
+     {"back_principal", &FirstOrder::back_principal},
+     {"entrance_pupil", &FirstOrder::entrance_pupil},
+     {"exit_pupil", &FirstOrder::exit_pupil},
+     {"entrance_radius", &FirstOrder::entrance_radius},
+     {"exit_radius", &FirstOrder::exit_radius},
+     {"f_number", &FirstOrder::f_number},
+     {"length", &FirstOrder::length},
+     {"petzval_radius", &FirstOrder::petzval_radius}}};
+
 /// Throws InputError where the lens has no focal length (its last ray runs along the axis).
 FirstOrder first_order(const LensPrescription& lens, SpectralLine line = SpectralLine::kD);
 
@@ -43,6 +65,15 @@ struct SeidelTerms {
     double spherical = 0, coma = 0, astigmatism = 0, petzval = 0, distortion = 0;
     double axial_colour = 0, lateral_colour = 0;
 };
+
+inline constexpr std::array<NamedNumber<SeidelTerms>, 7> kSeidelNumbers{
+    {{"spherical", &SeidelTerms::spherical},
+     {"coma", &SeidelTerms::coma},
+     {"astigmatism", &SeidelTerms::astigmatism},
+     {"petzval", &SeidelTerms::petzval},
+     {"distortion", &SeidelTerms::distortion},
+     {"axial_colour", &SeidelTerms::axial_colour},
+     {"lateral_colour", &SeidelTerms::lateral_colour}}};
 
 /// What is looked at: the height of the marginal ray at the entrance pupil, and the chief ray's slope in
 /// front of the lens.

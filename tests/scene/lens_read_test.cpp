@@ -201,6 +201,22 @@ TEST_CASE("a scene's lenses are optics behind its meshes, with their glasses and
     CHECK(std::fabs(box.high.x - 2) < 1e-12);
 }
 
+TEST_CASE("glasses that differ are materials that differ, whatever they are called", "[scene][lens]") {
+    const Scene scene = load_text(lens_scene(R"([ { "name": "pair", "surfaces": [
+        { "radius": 5, "thickness": 1, "ior": 1.5, "abbe": 60, "aperture": 1 },
+        { "radius": -5, "thickness": 1, "aperture": 1 },
+        { "radius": 5, "thickness": 1, "ior": 1.5, "abbe": 30, "aperture": 1 },
+        { "radius": -5, "thickness": 1, "aperture": 1 },
+        { "radius": 5, "thickness": 1, "ior": 1.5, "abbe": 60, "aperture": 1 },
+        { "radius": -5, "aperture": 1 } ] } ])"));
+    REQUIRE(scene.meshes.size() == 4);
+    const auto glass = [&](std::size_t i) { return scene.materials.at(scene.meshes[i].material); };
+    CHECK(scene.meshes[1].material == scene.meshes[3].material);
+    CHECK(glass(1).name == "pair/1.5");
+    CHECK(glass(2).name == "pair/1.5/2");
+    CHECK(std::fabs(glass(2).dispersion - 2 * glass(1).dispersion) < 1e-12);
+}
+
 TEST_CASE("lenses that cannot be made are refused with their place in the scene",
           "[scene][lens][bad-input]") {
     const auto with = [](const std::string& what, const std::string& by) {

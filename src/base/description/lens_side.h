@@ -25,10 +25,9 @@ inline bool is_conicoid(const LensSide& side) {
     return std::all_of(side.coefficients.begin(), side.coefficients.end(), [](double a) { return a == 0; });
 }
 
-/// A side, all of whose lengths are `factor` times as long.
-inline LensSide scaled(LensSide side, double factor) {
+/// The shape `factor` times as large, up to the same aperture.
+inline LensSide with_scaled_shape(LensSide side, double factor) {
     side.curvature /= factor;
-    side.aperture *= factor;
     double unit = factor;
     for (double& a : side.coefficients) {
         a /= unit;

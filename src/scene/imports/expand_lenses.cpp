@@ -1,7 +1,8 @@
 #include "scene/imports/expand_lenses.h"
 
 #include <algorithm>
-#include <set>
+#include <utility>
+#include <vector>
 
 #include "json/schema.h"
 #include "scene/read/read_lens.h"
@@ -48,13 +49,10 @@ class Expansion {
         : node_(node), lens_(lens), scene_(scene) {}
 
     void add_bodies() {
-        std::set<std::string> known;
         const std::vector<LensElement> elements = lens_elements(lens_.prescription);
         for (std::size_t i = 0; i < elements.size(); ++i) {
             const LensElement& element = elements[i];
-            const std::string glass = lens_.name + "/" + element.glass.name;
-            if (known.insert(glass).second)
-                scene_["materials"].push_back(material_json(glass, element.glass, lens_.dispersion));
+            const std::string glass = material_of(element.glass);
             Json mesh{{"name", lens_.name + "/" + std::to_string(i + 1)},
                       {"role", "optic"},
                       {"material", glass},
@@ -94,6 +92,21 @@ class Expansion {
     }
 
   private:
+    /// Its material's name, which is added where it is new. Glasses by numbers may share a name.
+    std::string material_of(const Glass& glass) {
+        std::size_t namesakes = 0;
+        for (const auto& [known, material] : materials_) {
+            if (known.name != glass.name) continue;
+            if (known.index == glass.index && known.abbe == glass.abbe) return material;
+            ++namesakes;
+        }
+        std::string material = lens_.name + "/" + glass.name;
+        if (namesakes > 0) material += "/" + std::to_string(namesakes + 1);
+        scene_["materials"].push_back(material_json(material, glass, lens_.dispersion));
+        materials_.emplace_back(glass, material);
+        return material;
+    }
+
     void add(Json mesh) {
         if (node_.has("transform")) mesh["transform"] = node_["transform"].json;
         scene_["meshes"].push_back(std::move(mesh));
@@ -102,6 +115,7 @@ class Expansion {
     const Node& node_;
     const ReadLens& lens_;
     Json& scene_;
+    std::vector<std::pair<Glass, std::string>> materials_;  // that were added
 };
 
 }  // namespace

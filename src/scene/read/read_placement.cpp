@@ -207,14 +207,8 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
         side *= *factor;
         extent = std::max(extent, side);
     };
-    if (auto* lens = std::get_if<LensPrimitive>(&*kind)) {
-        // Their apertures are scaled with all lengths.
-        for (LensSide* side : {&lens->front, &lens->back}) {
-            const double aperture = side->aperture;
-            *side = scaled(*side, *factor);
-            side->aperture = aperture;
-        }
-    }
+    if (auto* lens = std::get_if<LensPrimitive>(&*kind))
+        for (LensSide* side : {&lens->front, &lens->back}) *side = with_scaled_shape(*side, *factor);
     std::visit([&](auto& one) { for_each_length(one, scale); }, *kind);
     primitive.kind = *kind;
     if (!(extent <= kLargestCoordinate))
