@@ -1,8 +1,7 @@
 // From the light of a scene to what a screen shows: exposure, a tone curve, sRGB's transfer function.
 #pragma once
 
-#include <cmath>
-
+#include "base/math/srgb.h"
 #include "base/math/vec.h"
 
 namespace trilens {
@@ -27,15 +26,5 @@ Vec3 tone_mapped(const Vec3& colour, const ToneMapping& mapping);
 
 /// Throws UsageError unless the exposure lies in -100..100 and white is positive and finite.
 void check_tone_mapping(const ToneMapping& mapping);
-
-/// Linear light of a stored value, both 0..1.
-inline double linear_from_srgb(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
-/// The stored value of linear light, both 0..1.
-inline double srgb_from_linear(double v) {
-    return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
 
 }  // namespace trilens

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/math/srgb.h"
 #include "report/text.h"
 
 namespace trilens {
@@ -138,16 +139,12 @@ std::array<double, 3> viridis_srgb(double share) {
     return colour;
 }
 
-double linear_of_srgb(double code) {
-    return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);  // IEC 61966-2-1
-}
-
 }  // namespace
 
 LinearRgb viridis(double share) {
     const std::array<double, 3> code = viridis_srgb(share);
-    return {static_cast<float>(linear_of_srgb(code[0])), static_cast<float>(linear_of_srgb(code[1])),
-            static_cast<float>(linear_of_srgb(code[2]))};
+    return {static_cast<float>(linear_from_srgb(code[0])), static_cast<float>(linear_from_srgb(code[1])),
+            static_cast<float>(linear_from_srgb(code[2]))};
 }
 
 std::string viridis_hex(double share) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "base/util/error.h"
@@ -66,6 +67,18 @@ void read_meshes(const Node& root, Reading& reading) {
                          "the material '" + reading.scene.materials[i].name + "' is not used");
 }
 
+/// The first material by which any surface shows what lies behind in part.
+std::optional<Id> first_that_blends(const Scene& scene) {
+    std::optional<Id> first;
+    for (const Mesh& mesh : scene.meshes)
+        for (std::size_t t = 0; t < mesh.object.material.size(); ++t) {
+            const Id i = mesh.object.material[t];
+            if (i >= scene.materials.size() || (first && *first <= i)) continue;
+            if (blends(blending_of(scene.materials[i]), mesh.object, t)) first = i;
+        }
+    return first;
+}
+
 /// What would be seen, but is black or plain.
 void warn_of_appearance(Reading& reading) {
     const Scene& scene = reading.scene;
@@ -85,10 +98,8 @@ void warn_of_appearance(Reading& reading) {
         return mesh.role == Role::kOptic && scene.materials[mesh.material].transmission_factor == 1;
     };
     const bool has_glass = std::any_of(scene.meshes.begin(), scene.meshes.end(), is_glass);
-    const auto blended = std::find_if(of_objects.begin(), of_objects.end(), [&](Id i) {
-        return i < scene.materials.size() && blends(scene.materials[i]);
-    });
-    if (blended != of_objects.end() && (has_shadows || has_glass))
+    const std::optional<Id> blended = first_that_blends(scene);
+    if (blended && (has_shadows || has_glass))
         reading.warn("/materials/" + std::to_string(*blended),
                      "blends with what is behind: such surfaces cast no shadow, and are not drawn inside of "
                      "glass");

@@ -44,14 +44,15 @@ struct ShadeSurroundings {
     std::function<Vec3(std::size_t light, const Receiver&)> caustic;
 };
 
-/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs and
-/// normals may end early: triangles beyond have zeros.
+/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs,
+/// colors and normals may end early: triangles beyond have zeros, and colours of one.
 struct ShadeScene : ShadeSurroundings {
     const TriangleScene* triangles = nullptr;
     std::vector<Id> material;              // index into materials
     std::vector<std::array<Vec2, 3>> uvs;  // v upward from the picture's bottom; unset triangles hold zeros
     std::vector<std::array<Vec2, 3>> second_uvs;  // of textures whose sampler says so
-    std::vector<std::array<Vec3, 3>> normals;     // unit per corner; all zero: the triangle is flat
+    std::vector<std::array<Vec4, 3>> colors;   // factors of base colour and alpha; unset triangles hold ones
+    std::vector<std::array<Vec3, 3>> normals;  // unit per corner; all zero: the triangle is flat
 };
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided;
@@ -145,7 +146,8 @@ bool is_plain(const ShadeScene& scene, const Hit& hit);
 /// Whether the material there is lit: else it shows its base colour.
 bool is_lit(const ShadeScene& scene, const Hit& hit);
 
-/// Whether what is seen there is of pictures: of the material, or of the background where nothing is hit.
+/// Whether what is seen there is of pictures or of the mesh's own colours: of the material, or of the
+/// background where nothing is hit.
 bool has_texture(const ShadeScene& scene, const Hit& hit);
 
 /// Whether pictures say how light comes to the surface there, not just what colour it has.

@@ -26,6 +26,15 @@ Vec2 uv_at(const ShadeScene& scene, const Hit& hit, const TextureSampler& sample
            hit.barycentric.y * uv[2];
 }
 
+/// The factor of the base colour and its alpha that the mesh's own colours are there.
+Vec4 color_at(const ShadeScene& scene, const Hit& hit) {
+    if (hit.triangle >= scene.colors.size()) return Vec4(1);
+    const std::array<Vec4, 3>& color = scene.colors[hit.triangle];
+    const Vec4 mean = (1 - hit.barycentric.x - hit.barycentric.y) * color[0] + hit.barycentric.x * color[1] +
+                      hit.barycentric.y * color[2];
+    return glm::clamp(mean, Vec4(0), Vec4(1));
+}
+
 /// How uv at the hit change along the sides of the ray's footprint.
 Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen, const TextureSampler& sampler) {
     const std::array<Vec2, 3>* of_corners = uvs_of(scene, seen.hit->triangle, sampler);
@@ -138,7 +147,8 @@ bool is_lit(const ShadeScene& scene, const Hit& hit) {
 bool has_texture(const ShadeScene& scene, const Hit& hit) {
     if (!hit.seen()) return scene.background.environment != nullptr;
     const Material& material = material_of(scene, hit);
-    return material.base_color_texture || has_light_maps(scene, hit) || material.emissive_texture.picture;
+    return material.base_color_texture || hit.triangle < scene.colors.size() || has_light_maps(scene, hit) ||
+           material.emissive_texture.picture;
 }
 
 bool has_light_maps(const ShadeScene& scene, const Hit& hit) {
@@ -207,10 +217,11 @@ Vec3 background_radiance(const Background& background, const MipMap& map, const 
 double opacity_at(const ShadeScene& scene, const Hit& hit) {
     const Material& material = material_of(scene, hit);
     const Texture* picture = material.base_color_texture.get();
-    if (!picture || picture->alpha.empty()) return material.alpha_factor;
+    const double factor = material.alpha_factor * color_at(scene, hit).w;
+    if (!picture || picture->alpha.empty()) return factor;
     const TextureSampler& sampler = material.base_color_sampler;
     const double alpha = lookup_alpha(*picture, sampler, sampler.place(uv_at(scene, hit, sampler)));
-    return std::clamp(material.alpha_factor * alpha, 0.0, 1.0);
+    return std::clamp(factor * alpha, 0.0, 1.0);
 }
 
 MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen) {
@@ -225,7 +236,7 @@ MapTexels texels_at(const ShadeScene& scene, const SeenAlong& seen) {
     const Id index = scene.material[seen.hit->triangle];
     const Material& material = scene.materials[index];
     const MaterialMips* mips = seen.differential && index < scene.mips.size() ? &scene.mips[index] : nullptr;
-    texels.base = material.base_color_factor;
+    texels.base = material.base_color_factor * Vec3(color_at(scene, *seen.hit));
     if (material.base_color_texture)
         texels.base *= look_up(scene, seen, mips ? mips->base_color.get() : nullptr,
                                {*material.base_color_texture, material.base_color_sampler});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/math/srgb.h"
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/names.h"
@@ -11,13 +12,9 @@
 namespace trilens {
 namespace {
 
-double linear_of_srgb(double x) {
-    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-}
-
 Vec3 linear_of_srgb(unsigned rgb) {
-    return {linear_of_srgb((rgb >> 16 & 255) / 255.0), linear_of_srgb((rgb >> 8 & 255) / 255.0),
-            linear_of_srgb((rgb & 255) / 255.0)};
+    return {linear_from_srgb((rgb >> 16 & 255) / 255.0), linear_from_srgb((rgb >> 8 & 255) / 255.0),
+            linear_from_srgb((rgb & 255) / 255.0)};
 }
 
 }  // namespace

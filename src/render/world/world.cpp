@@ -27,12 +27,12 @@ constexpr double kBytesPerFacet = 350;
 constexpr double kBytesPerCell = 700;
 
 /// What a mesh has per triangle; those of earlier meshes that have none get zeros, those after the last mesh
-/// that has some get nothing.
+/// that has some get `nothing`.
 template <typename Corners>
 void append_where_given(const std::vector<Corners>& given, std::size_t first_triangle,
-                        std::vector<Corners>& all) {
+                        std::vector<Corners>& all, const Corners& nothing = {}) {
     if (given.empty()) return;
-    all.resize(first_triangle);
+    all.resize(first_triangle, nothing);
     all.insert(all.end(), given.begin(), given.end());
 }
 
@@ -56,6 +56,8 @@ struct Gathered {
         }
         append_where_given(mesh.uvs, triangles.size() - count, shading.uvs);
         append_where_given(mesh.second_uvs, triangles.size() - count, shading.second_uvs);
+        append_where_given(mesh.colors, triangles.size() - count, shading.colors,
+                           {Vec4(1), Vec4(1), Vec4(1)});
         append_where_given(mesh.normals, triangles.size() - count, shading.normals);
     }
 };
@@ -71,15 +73,16 @@ ObjectMesh part_of(const ObjectMesh& mesh, const std::vector<Id>& numbers) {
     take(mesh.triangles, part.triangles);
     take(mesh.uvs, part.uvs);
     take(mesh.second_uvs, part.second_uvs);
+    take(mesh.colors, part.colors);
     take(mesh.normals, part.normals);
     take(mesh.material, part.material);
     return part;
 }
 
 /// By material of the scene.
-std::vector<char> blending_materials(const Scene& scene) {
-    std::vector<char> blending;
-    for (const Material& material : scene.materials) blending.push_back(blends(material));
+std::vector<Blending> blending_materials(const Scene& scene) {
+    std::vector<Blending> blending;
+    for (const Material& material : scene.materials) blending.push_back(blending_of(material));
     return blending;
 }
 
@@ -197,7 +200,7 @@ void gather_objects(World& world) {
     world.objects = {};
     world.shading = {};
     reserve_objects(world);
-    const std::vector<char> blending = blending_materials(world.scene);
+    const std::vector<Blending> blending = blending_materials(world.scene);
     const Gathered opaque{world.objects, world.shading};
     TriangleScene triangles;
     ShadeScene shading;
@@ -205,13 +208,13 @@ void gather_objects(World& world) {
     for (Id id = 0; id < world.scene.meshes.size(); ++id) {
         if (world.scene.meshes[id].role != Role::kObject) continue;
         const ObjectMesh& mesh = world.scene.meshes[id].object;
-        if (std::none_of(mesh.material.begin(), mesh.material.end(), [&](Id m) { return blending[m]; })) {
+        std::array<std::vector<Id>, 2> numbers;  // of opaque triangles, of those that blend
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+            numbers[blends(blending[mesh.material[t]], mesh, t) ? 1 : 0].push_back(static_cast<Id>(t));
+        if (numbers[1].empty()) {
             opaque.append(id, mesh);
             continue;
         }
-        std::array<std::vector<Id>, 2> numbers;  // of opaque triangles, of those that blend
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-            numbers[blending[mesh.material[t]] ? 1 : 0].push_back(static_cast<Id>(t));
         if (!numbers[0].empty()) opaque.append(id, part_of(mesh, numbers[0]), numbers[0]);
         blended.append(id, part_of(mesh, numbers[1]), numbers[1]);
     }

@@ -174,6 +174,11 @@ class TriangleCut {
     std::vector<GridPolygon> pieces_;
 };
 
+bool has_alpha(const std::vector<std::array<Vec4, 3>>& colors, std::size_t triangle) {
+    return !colors.empty() && std::any_of(colors[triangle].begin(), colors[triangle].end(),
+                                          [](const Vec4& color) { return color.w < 1; });
+}
+
 /// The mesh that is made of another's triangles.
 class MeshCutter {
   public:
@@ -192,6 +197,7 @@ class MeshCutter {
     void cut(std::size_t t) {
         const Material& material = materials_[from_.material[t]];
         if (material.alpha_mode != AlphaMode::kMask) return keep(t);
+        if (has_alpha(from_.colors, t)) ++done_.colored;
         const double cutoff = material.alpha_cutoff;
         const Texture* texture = material.base_color_texture.get();
         const auto& uvs = material.base_color_sampler.uv_set == 0 ? from_.uvs : from_.second_uvs;
@@ -219,16 +225,18 @@ class MeshCutter {
         to_.material.push_back(from_.material[t]);
         if (!from_.uvs.empty()) to_.uvs.push_back(from_.uvs[t]);
         if (!from_.second_uvs.empty()) to_.second_uvs.push_back(from_.second_uvs[t]);
+        if (!from_.colors.empty()) to_.colors.push_back(from_.colors[t]);
         if (!from_.normals.empty()) to_.normals.push_back(from_.normals[t]);
     }
 
     void add(std::size_t t, const GridPolygon& piece, const TriangleCut& cut) {
         const auto first = static_cast<Id>(to_.points.size());
         std::vector<Vec2> uvs, second_uvs;
+        std::vector<Vec4> colors;
         std::vector<Vec3> normals;
         for (const GridPlace& place : piece) {
             const Vec2 weights = cut.weights(place);
-            const auto mix = [&](const auto& a, const auto& b, const auto& c) {
+            const auto mix = [&]<typename T>(const T& a, const T& b, const T& c) -> T {
                 return a + weights.x * (b - a) + weights.y * (c - a);
             };
             const IdTriple& corner = from_.triangles[t];
@@ -237,6 +245,7 @@ class MeshCutter {
             const auto mix_set = [&](const auto& set) { return mix(set[t][0], set[t][1], set[t][2]); };
             if (!from_.uvs.empty()) uvs.push_back(mix_set(from_.uvs));
             if (!from_.second_uvs.empty()) second_uvs.push_back(mix_set(from_.second_uvs));
+            if (!from_.colors.empty()) colors.push_back(mix_set(from_.colors));
             if (!from_.normals.empty())
                 normals.push_back(
                     normalize_or_zero(mix(from_.normals[t][0], from_.normals[t][1], from_.normals[t][2])));
@@ -247,6 +256,7 @@ class MeshCutter {
             to_.material.push_back(from_.material[t]);
             if (!uvs.empty()) to_.uvs.push_back({uvs[0], uvs[b], uvs[c]});
             if (!second_uvs.empty()) to_.second_uvs.push_back({second_uvs[0], second_uvs[b], second_uvs[c]});
+            if (!colors.empty()) to_.colors.push_back({colors[0], colors[b], colors[c]});
             if (!from_.normals.empty()) to_.normals.push_back({normals[0], normals[b], normals[c]});
         }
     }
@@ -259,9 +269,15 @@ class MeshCutter {
 
 }  // namespace
 
-bool blends(const Material& material) {
+Blending blending_of(const Material& material) {
+    if (material.alpha_mode != AlphaMode::kBlend) return Blending::kNever;
     const bool has_alpha = material.base_color_texture && !material.base_color_texture->alpha.empty();
-    return material.alpha_mode == AlphaMode::kBlend && (material.alpha_factor < 1 || has_alpha);
+    return material.alpha_factor < 1 || has_alpha ? Blending::kAll : Blending::kByColors;
+}
+
+bool blends(Blending material, const ObjectMesh& mesh, std::size_t triangle) {
+    return material == Blending::kAll ||
+           (material == Blending::kByColors && has_alpha(mesh.colors, triangle));
 }
 
 AlphaCut cut_by_alpha(ObjectMesh& mesh, const std::vector<Material>& materials) {

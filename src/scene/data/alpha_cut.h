@@ -9,12 +9,18 @@
 
 namespace trilens {
 
-/// Whether surfaces of this material show what lies behind in part.
-bool blends(const Material& material);
+/// Which surfaces of a material show what lies behind in part: those at whose corners the mesh's own colours
+/// have an alpha below 1 (kByColors), or all.
+enum class Blending { kNever, kByColors, kAll };
+Blending blending_of(const Material& material);
+
+/// Whether one of the mesh's triangles does, whose material blends so.
+bool blends(Blending material, const ObjectMesh& mesh, std::size_t triangle);
 
 /// What was done.
 struct AlphaCut {
     std::size_t cut = 0;       // triangles that were cut or taken away
+    std::size_t colored = 0;   // triangles of masks whose corners have an alpha of their own, not cut by it
     std::size_t too_fine = 0;  // triangles that stand whole: their pictures repeat too often on them
 };
 

@@ -148,6 +148,12 @@ void SceneCheck::object(const Mesh& whole, const std::string& place) const {
             "needs one entry per triangle, or none");
     require(mesh.second_uvs.empty() || mesh.second_uvs.size() == count, place + "/uvs1",
             "needs one entry per triangle, or none");
+    require(mesh.colors.empty() || mesh.colors.size() == count, place + "/colors",
+            "needs one entry per triangle, or none");
+    for (const std::array<Vec4, 3>& corners : mesh.colors)
+        for (const Vec4& color : corners)
+            for (int k = 0; k < 4; ++k)
+                require(color[k] >= 0 && color[k] <= 1, place + "/colors", "has a number outside 0..1");
     require(mesh.normals.empty() || mesh.normals.size() == count, place + "/normals",
             "needs one entry per triangle, or none");
 }

@@ -48,6 +48,8 @@ void add_triangle(const PolygonMesh& mesh, const std::array<std::size_t, 3>& cor
     if (!mesh.second_uvs.empty())
         object.second_uvs.push_back(
             {mesh.second_uvs[corner[0]], mesh.second_uvs[corner[1]], mesh.second_uvs[corner[2]]});
+    if (!mesh.colors.empty())
+        object.colors.push_back({mesh.colors[corner[0]], mesh.colors[corner[1]], mesh.colors[corner[2]]});
     if (mesh.normals.empty()) return;
     std::array<Vec3, 3> normals;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -72,6 +74,7 @@ bool place(PolygonMesh& mesh, const Transform& transform) {
         reverse_after_first(mesh.cage.face_vertex_indices, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.uvs, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.second_uvs, mesh.cage.face_vertex_counts);
+        reverse_after_first(mesh.colors, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.normals, mesh.cage.face_vertex_counts);
     }
     return true;

@@ -69,6 +69,7 @@ struct PolygonMesh {
     // Per face corner, parallel to cage.face_vertex_indices; empty where the file has none.
     std::vector<Vec2> uvs;            // v upward
     std::vector<Vec2> second_uvs;     // of textures that ask for the second set
+    std::vector<Vec4> colors;         // factors of the base colour and its alpha, not negative
     std::vector<Vec3> normals;        // any length; zero: none, take the triangle's own
     std::vector<Id> face_material;    // per face an index into `materials`, or kNone; empty: none at all
     std::vector<Material> materials;  // the file's own

@@ -80,6 +80,7 @@ struct ObjectMesh {
     std::vector<std::array<Vec2, 3>>
         uvs;  // v upward from the picture's bottom, as OBJ; glTF's is turned on reading
     std::vector<std::array<Vec2, 3>> second_uvs;  // of textures that ask for the second set
+    std::vector<std::array<Vec4, 3>> colors;      // factors of the base colour and its alpha
     std::vector<std::array<Vec3, 3>> normals;     // unit
     std::vector<Id> material;                     // per triangle: index into Scene::materials
 };

@@ -212,8 +212,8 @@ void add(const Mesh& mesh, Digest& digest) {
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
-    const auto& [points, triangles, uvs, second_uvs, corner_normals, materials] = object;
-    digest.add_all(points, triangles, uvs, second_uvs, corner_normals, materials);
+    const auto& [points, triangles, uvs, second_uvs, colors, corner_normals, materials] = object;
+    digest.add_all(points, triangles, uvs, second_uvs, colors, corner_normals, materials);
     digest.add(primitive.has_value());
     if (primitive) add(*primitive, digest);
     add(cage, digest);

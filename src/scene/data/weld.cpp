@@ -27,6 +27,7 @@ class FaceCopier {
             to_.cage.face_vertex_indices.push_back(from_.cage.face_vertex_indices[corner]);
             if (!from_.uvs.empty()) to_.uvs.push_back(from_.uvs[corner]);
             if (!from_.second_uvs.empty()) to_.second_uvs.push_back(from_.second_uvs[corner]);
+            if (!from_.colors.empty()) to_.colors.push_back(from_.colors[corner]);
             if (!from_.normals.empty()) to_.normals.push_back(from_.normals[corner]);
         }
     }

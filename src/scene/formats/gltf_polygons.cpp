@@ -102,6 +102,8 @@ class Appender {
         // What has no second set takes its first for it.
         const bool has_second = !primitive.second_uvs.empty() || !mesh_.second_uvs.empty();
         if (has_second && mesh_.second_uvs.empty()) mesh_.second_uvs = mesh_.uvs;
+        const bool has_colors = !primitive.colors.empty() || !mesh_.colors.empty();
+        if (has_colors) mesh_.colors.resize(mesh_.cage.face_vertex_indices.size(), Vec4(1));
         for (const IdTriple& triangle : primitive.triangles) {
             IdTriple corners = triangle;
             if (mirrored_) std::swap(corners[1], corners[2]);
@@ -115,6 +117,8 @@ class Appender {
                     const Vec2 second = primitive.second_uvs.empty() ? uv : primitive.second_uvs[vertex];
                     mesh_.second_uvs.push_back({second.x, 1 - second.y});
                 }
+                if (has_colors)
+                    mesh_.colors.push_back(primitive.colors.empty() ? Vec4(1) : primitive.colors[vertex]);
                 mesh_.normals.push_back(normals_.empty() ? Vec3(0) : normals_[vertex]);
             }
         }

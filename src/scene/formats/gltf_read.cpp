@@ -165,13 +165,8 @@ class Reader {
             fail(place, "its attributes differ in length");
         for (std::size_t i = 0; i < numbers.size(); i += static_cast<std::size_t>(width)) {
             const Vec4 color(numbers[i], numbers[i + 1], numbers[i + 2], width == 4 ? numbers[i + 3] : 1);
-            for (int k = 0; k < 4; ++k)
-                if (!(color[k] >= 0)) fail(place + "/attributes/COLOR_0", "a colour is negative");
-            into.colors.push_back(color);
+            into.colors.push_back(glm::clamp(color, Vec4(0), Vec4(1)));  // glTF 2.0, section 3.7.2.1
         }
-        const bool is_white = std::all_of(into.colors.begin(), into.colors.end(),
-                                          [](const Vec4& color) { return color == Vec4(1); });
-        if (!is_white) warn("vertex colours (COLOR_0) are ignored");
     }
 
     void read_influences(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {

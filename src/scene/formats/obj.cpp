@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/math/srgb.h"
 #include "base/util/error.h"
 #include "json/json.h"
 #include "scene/formats/line_scanner.h"
@@ -41,7 +42,7 @@ class ObjReader {
         if (words.empty()) return;
         const std::string_view keyword = words[0];
         if (keyword == "v")
-            result_.mesh.cage.points.push_back(read_vec3(words));
+            read_point(words);
         else if (keyword == "vt")
             read_uv(words);
         else if (keyword == "vn")
@@ -88,6 +89,21 @@ class ObjReader {
             fail("'" + std::string(words[0]) + "' needs 3 numbers, found " +
                  std::to_string(words.size() - 1));
         return {read_number(words[1]), read_number(words[2]), read_number(words[3])};
+    }
+
+    /// Three coordinates, then perhaps a colour, which other programs write as screens have it (sRGB).
+    void read_point(const Words& words) {
+        std::vector<Vec3>& points = result_.mesh.cage.points;
+        points.push_back(read_vec3(words));
+        if (words.size() != 7) return;
+        Vec4 color(1);
+        for (int k = 0; k < 3; ++k) {
+            const double value = read_number(words[static_cast<std::size_t>(4 + k)]);
+            if (!(value >= 0 && value <= 1)) fail("a point's colour must lie in 0..1");
+            color[k] = linear_from_srgb(value);
+        }
+        point_colors_.resize(points.size() - 1, Vec4(1));
+        point_colors_.push_back(color);
     }
 
     void read_uv(const Words& words) {
@@ -150,6 +166,7 @@ class ObjReader {
     std::size_t line_ = 0, skipped_ = 0;
     std::vector<Vec2> uvs_;
     std::vector<Vec3> normals_;
+    std::vector<Vec4> point_colors_;  // of the first points; empty where none has any
     std::vector<Corner> corners_;
     std::vector<std::size_t> face_line_;
     Id material_ = kNone;
@@ -257,7 +274,10 @@ void ObjReader::resolve_corners() {
         std::any_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.uv >= 0; });
     const bool has_normals =
         std::any_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.normal >= 0; });
+    if (!point_colors_.empty()) point_colors_.resize(mesh.cage.points.size(), Vec4(1));
     for (const Corner& corner : corners_) {
+        if (!point_colors_.empty())
+            mesh.colors.push_back(point_colors_[static_cast<std::size_t>(corner.point)]);
         mesh.cage.face_vertex_indices.push_back(corner.point);
         if (has_uvs) mesh.uvs.push_back(corner.uv < 0 ? Vec2(0) : uvs_[static_cast<std::size_t>(corner.uv)]);
         if (has_normals)

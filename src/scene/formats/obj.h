@@ -17,12 +17,13 @@ struct ObjFile {
     std::vector<std::string> warnings;
 };
 
-/// Parses an OBJ, UTF-8 with or without its byte order mark: v, vt, vn, f (3..255 corners; negative indices
-/// count back from the last one so far), usemtl, mtllib, and the tags `t crease 2/1/0 a b sharpness`, `t
-/// corner 1/1/0 v sharpness`, `t hole 1/0/0 face` and `t interpolateboundary 1/0/0 k` (0 none, 1 edge and
-/// corner, 2 edge only), whose indices count from 0 over the whole file. A backslash joins lines; lines and
-/// points are skipped; other keywords are ignored. Throws InputError(file, "line n") for numbers, indices,
-/// counts or tags that are malformed or out of range, and InputError(file) for a file without faces.
+/// Parses an OBJ, UTF-8 with or without its byte order mark: v (with a colour after its coordinates, sRGB),
+/// vt, vn, f (3..255 corners; negative indices count back from the last one so far), usemtl, mtllib, and the
+/// tags `t crease 2/1/0 a b sharpness`, `t corner 1/1/0 v sharpness`, `t hole 1/0/0 face` and `t
+/// interpolateboundary 1/0/0 k` (0 none, 1 edge and corner, 2 edge only), whose indices count from 0 over the
+/// whole file. A backslash joins lines; lines and points are skipped; other keywords are ignored. Throws
+/// InputError(file, "line n") for numbers, indices, counts or tags that are malformed or out of range, and
+/// InputError(file) for a file without faces.
 ObjFile parse_obj(const std::string& bytes, const std::string& file);
 
 /// What trilens takes from a material of an MTL file.

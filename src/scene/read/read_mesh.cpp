@@ -1,4 +1,4 @@
-// The settings of meshes: what they are, how optics are cut into facets, and the keys of their shapes.
+// One entry of `meshes`: its material, its shape as optic or object, and what is doubtful about it.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -13,165 +13,6 @@
 #include "scene/read/reading.h"
 
 namespace trilens {
-namespace {
-
-using MeshFields = std::vector<Field<Mesh>>;
-
-Json text_value() {
-    return {{"type", "string"}, {"minLength", 1}};
-}
-
-/// Read where the object's polygons are.
-Field<Mesh> shading_field() {
-    Json names = word_of(names_of<ObjectShading>());
-    names["default"] = name_of(ObjectShading::kGivenNormals);
-    return part<Mesh>(
-        "shading", std::move(names),
-        "object: given: lit by the normals that its file or primitive has, else flat; flat: by "
-        "its triangles' own; smooth: where none are given, by the mean of the faces around each "
-        "point.");
-}
-
-/// A terrain is an object.
-Field<Mesh> role_field() {
-    Field<Mesh> field = part<Mesh>("role", word_of({"object", "optic", "terrain"}));
-    field.read = [](const Json& json, Mesh& mesh) {
-        mesh.role = json == "optic" ? Role::kOptic : Role::kObject;
-    };
-    return field;
-}
-
-/// Keys that are read elsewhere.
-template <typename Part>
-void add_keys(const std::vector<Field<Part>>& of_part, MeshFields& fields) {
-    for (const Field<Part>& field : of_part) {
-        fields.emplace_back();
-        static_cast<FieldSchema&>(fields.back()) = field;
-    }
-}
-
-MeshFields all_mesh_fields() {
-    MeshFields fields{
-        setting("name", &Mesh::name, ref("name")),
-        role_field(),
-        part<Mesh>(
-            "material", text_value(),
-            "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own."),
-        setting("resolution", &Mesh::resolution, whole_in(1, kMaxResolution),
-                "optic: N x N facets per quad face or patch; object of patches: N x N quads."),
-        choice(
-            "rays", &Mesh::rays,
-            "optic: at the corners of its facets the exact rays, with straight interpolation between them, "
-            "or rays fitted so that what lies between is nearest to exact in the mean."),
-        choice("grid", &Mesh::grid,
-               "optic: its facets lie on the surface, N x N per face, or on the film, N x N over its bounds "
-               "there."),
-        either("seenOptics", &Mesh::layered, {"divided", "layers"},
-               "optic that mirrors: an optic seen in it is drawn as a layer, its own grid as this one shows "
-               "it, where that can be; or this optic's facets are divided along its outline, and at last "
-               "traced."),
-        setting(
-            "priority", &Mesh::priority, whole_in(-1000, 1000),
-            "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around "
-            "its liquid."),
-        shading_field(),
-        part<Mesh>("transform", ref("transform")),
-        part<Mesh>("fit", ref("fit")),
-        part<Mesh>("file", text_value(), "OBJ, glTF or GLB."),
-        part<Mesh>("node", ref("index"),
-                   "Of a glTF: the mesh of its node of that number, in the world; without it, all nodes."),
-        part<Mesh>("parts", list_of(ref("index"), 1), "Of a node: those of its mesh's primitives alone."),
-        part<Mesh>("clip", ref("index"), "Of a glTF: its animation of that number."),
-        part<Mesh>("time", ref("number"), "Of a clip: seconds."),
-        part<Mesh>("primitive", ref("primitive")),
-        part<Mesh>("patches", list_of(ref("patch"), 1),
-                   "Spline patches, of an optic as they are, of an object as N x N quads each."),
-        part<Mesh>("points", list_of(ref("vec3"), 3)),
-        part<Mesh>("faceVertexCounts", list_of(whole_in(3, 255), 1)),
-        part<Mesh>("faceVertexIndices", list_of(ref("index"), 3)),
-        part<Mesh>("uvs", list_of(ref("vec2"), 1),
-                   "v upward. One per entry of faceVertexIndices, or, with uvIndices, those it names."),
-        part<Mesh>(
-            "uvIndices", list_of(ref("index"), 3),
-            "One per entry of faceVertexIndices; a copy of faceVertexIndices makes uvs one per point."),
-        part<Mesh>("uvs1", list_of(ref("vec2"), 1),
-                   "Of textures with texCoord 1, one per entry of faceVertexIndices."),
-    };
-    add_keys(subdivision_fields(), fields);
-    add_keys(terrain_fields(), fields);
-    fields.push_back(part<Mesh>("normals", ref("normals")));
-    return fields;
-}
-
-// Which keys go together, whatever they hold.
-constexpr const char* kMeshRules = R"json({
-  "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] }, { "required": ["heights"] }, { "required": ["patches"] } ],
-  "dependencies": {
-    "heights": ["size"], "size": ["heights"], "noData": ["heights"], "heightError": ["heights"],
-    "thinning": ["heightError"], "region": ["heightError"],
-    "points": ["faceVertexCounts", "faceVertexIndices"], "faceVertexCounts": ["points"], "faceVertexIndices": ["points"],
-    "uvIndices": ["uvs"], "creaseIndices": ["creaseSharpnesses"], "creaseSharpnesses": ["creaseIndices"],
-    "node": ["file"], "parts": ["node"], "clip": ["file"], "time": ["clip"],
-    "creaseLengths": ["creaseIndices"], "cornerIndices": ["cornerSharpnesses"], "cornerSharpnesses": ["cornerIndices"]
-  },
-  "allOf": [
-    { "if": { "properties": { "role": { "const": "optic" } } },
-      "then": { "title": "an optic", "required": ["material"], "properties": { "heights": false } } },
-    { "if": { "properties": { "role": { "const": "terrain" } } },
-      "then": { "title": "a terrain", "required": ["heights"] } },
-    { "if": { "required": ["heights"] },
-      "then": { "title": "a terrain", "properties": { "role": { "const": "terrain" }, "uvs": false, "uvIndices": false, "uvs1": false } } },
-    { "if": { "required": ["file"] },
-      "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
-    { "if": { "required": ["patches"] },
-      "then": { "title": "a mesh of patches", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
-        "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } },
-    { "if": { "required": ["primitive"] },
-      "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
-        "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } }
-  ]
-})json";
-
-}  // namespace
-
-const std::vector<Field<Mesh>>& mesh_fields() {
-    static const MeshFields fields = all_mesh_fields();
-    return fields;
-}
-
-Json mesh_schema() {
-    Json schema = object_schema(
-        {.title = "a mesh",
-         .description =
-             "UsdGeomMesh's names. Objects are drawn as their polygons, optics as their limit "
-             "surface: what an object has no use for (resolution, creases, normals) it ignores. No "
-             "point of an optic's cage may lie more than 1e4 times as far from their middle (the "
-             "median along each axis) as half of them do.",
-         .required = {"role"}},
-        mesh_fields());
-    schema.update(parse_json(kMeshRules, "the rules of meshes"));
-    return schema;
-}
-
-const std::vector<Field<NormalOverride>>& normal_fields() {
-    static const std::vector<Field<NormalOverride>> fields{
-        choice("type", &NormalOverride::type).without_default(),
-        setting("center", &NormalOverride::center, ref("vec3"),
-                "sphere: normals point away from it; world frame.")
-            .of({"sphere"}),
-        setting("seed", &NormalOverride::seed, ref("index")).of({"noise"}),
-        setting("amplitude", &NormalOverride::amplitude, ref("notNegative")).of({"noise"}),
-        setting("scale", &NormalOverride::scale, ref("positive")).of({"noise"}),
-    };
-    return fields;
-}
-
-Json normals_schema() {
-    return object_schema({.title = "a normals override", .required = {"type"}, .kind_title = "# normals"},
-                         normal_fields());
-}
-
-// One entry of `meshes`: its material, its shape as optic or object, and what is doubtful about it.
 
 namespace {
 
@@ -232,6 +73,7 @@ void read_optic_uvs(const Node& node, const PolygonMesh& polygons, Mesh& mesh, R
 }
 
 void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
+    if (node.has("colors")) node["colors"].fail("are an object's: an optic has its material's colour alone");
     if (node.has("shading"))
         node["shading"].fail("is an object's: an optic shows what it reflects and refracts");
     check_optic_material(node, mesh.material, reading);
@@ -249,6 +91,9 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     }
     PolygonMesh polygons =
         node.has("file") ? read_mesh_file(node, false, reading) : read_inline_polygons(node);
+    const bool is_colored = std::any_of(polygons.colors.begin(), polygons.colors.end(),
+                                        [](const Vec4& color) { return color != Vec4(1); });
+    if (is_colored) reading.warn(node.place, "the colours of its points are ignored: it is an optic");
     // Triangle meshes have points once per seam, cages once.
     if (node.has("file") && polygons.is_triangle_soup) weld_points(polygons);
     read_subdivision(node, polygons.cage);
@@ -334,6 +179,7 @@ PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, Reading& reading)
     PolygonMesh polygons = node.has("file")        ? read_mesh_file(node, inherits(node), reading)
                            : node.has("primitive") ? read_object_primitive(node["primitive"])
                                                    : read_inline_polygons(node);
+    if (node.has("vertexColors") && !node.json.at("vertexColors").get<bool>()) polygons.colors.clear();
     read_subdivision(node, polygons.cage);
     place_mesh(polygons, node);
     set_shading(polygons, read_shading(node));
@@ -364,6 +210,9 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     settle_materials(own, mesh, reading.scene);
     settle_second_uvs(node, mesh.object, reading);
     const AlphaCut cut = cut_by_alpha(mesh.object, reading.scene.materials);
+    warn_count(cut.colored,
+               "triangles of a mask have colours with an alpha at their points, which does not cut them",
+               node.place, reading);
     warn_count(cut.too_fine, "triangles are not cut out by their picture, which has too many texels there",
                node.place, reading);
     warn_count(uncovered_faces, "faces cross themselves: they are drawn as fans from their first corners",

@@ -50,6 +50,15 @@ void read_uvs(const Node& mesh, PolygonMesh& polygons) {
         polygons.uvs.push_back(uvs[static_cast<std::size_t>(index)]);
 }
 
+/// One per point, given to the corners.
+void read_colors(const Node& node, PolygonMesh& polygons) {
+    check_length(node, static_cast<long long>(polygons.cage.points.size()), "one per entry of points");
+    for (const int point : polygons.cage.face_vertex_indices) {
+        const auto color = node.json.at(static_cast<std::size_t>(point)).get<std::vector<double>>();
+        polygons.colors.emplace_back(color[0], color[1], color[2], color.size() > 3 ? color[3] : 1);
+    }
+}
+
 void read_creases(const Node& mesh, Cage& cage) {
     const Node indices = mesh["creaseIndices"], sharpnesses = mesh["creaseSharpnesses"];
     cage.crease_indices = read_indices(indices, cage.points.size(), "points");
@@ -86,6 +95,7 @@ PolygonMesh read_inline_polygons(const Node& mesh) {
                  std::accumulate(cage.face_vertex_counts.begin(), cage.face_vertex_counts.end(), 0LL),
                  "the sum of faceVertexCounts");
     if (mesh.has("uvs")) read_uvs(mesh, polygons);
+    if (mesh.has("colors")) read_colors(mesh["colors"], polygons);
     if (mesh.has("uvs1")) {
         check_length(mesh["uvs1"], static_cast<long long>(polygons.cage.face_vertex_indices.size()),
                      "one per entry of faceVertexIndices");

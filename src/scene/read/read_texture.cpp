@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/math/srgb.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -148,13 +149,10 @@ Json texture_schema() {
 
 namespace {
 
-/// What a picture's file holds, of the light that was made of it. Source: IEC 61966-2-1 (sRGB).
+/// What a picture's file holds, of the light that was made of it.
 std::shared_ptr<const Texture> as_stored(const Texture& linear) {
     auto stored = std::make_shared<Texture>(linear);
-    for (float& value : stored->rgb) {
-        const double v = static_cast<double>(value);
-        value = static_cast<float>(v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-    }
+    for (float& value : stored->rgb) value = static_cast<float>(srgb_from_linear(static_cast<double>(value)));
     return stored;
 }
 

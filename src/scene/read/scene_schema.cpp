@@ -44,6 +44,7 @@ constexpr const char* kFrame = R"json({
   "name": { "type": "string", "minLength": 1 },
   "vec2": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "$ref": "#/definitions/number" } },
   "vec3": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/number" } },
+  "vertexColor": { "type": "array", "minItems": 3, "maxItems": 4, "items": { "$ref": "#/definitions/share" } },
   "color": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/notNegative" } },
 
   "import": {
