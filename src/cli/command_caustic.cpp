@@ -27,7 +27,7 @@ std::vector<double> numbers_of(const Vec3& light) {
 Answer run_caustic(const CausticOptions& options, Console& console) {
     console.files().reads({options.scene.scene});
     check_output(options.output, console);
-    const Renderer renderer = load_renderer(options.scene, console);
+    const Renderer renderer = load_smooth_renderer(options.scene, console);
     CausticMapRequest request;
     request.light = static_cast<std::size_t>(options.light);
     request.target = parse_target(options.onto, renderer.scene());

@@ -67,7 +67,7 @@ Answer run(const MapOptions& options, Console& console) {
         check_output(options.output, console);
     }
     if (options.t_up && format != "exr") throw UsageError("--t-up is about STMaps: .exr");
-    const Renderer renderer = load_renderer(options.scene, console);
+    const Renderer renderer = load_smooth_renderer(options.scene, console);
     const FilmMapRequest request = request_of(options, renderer);
     if (format == "data" || format == "obj") return run_mesh(options, request, renderer, console);
 

@@ -62,7 +62,7 @@ std::vector<std::string> parameter_pointers(const std::vector<std::string>& word
 Answer run(const ProjectOptions& options, Console& console) {
     console.files().reads({options.scene.scene, options.points, options.directions});
     const std::vector<Vec3> points = wanted_points(options);
-    const Renderer renderer = load_renderer(options.scene, console);
+    const Renderer renderer = load_smooth_renderer(options.scene, console);
     ProjectRequest request;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
     request.refine = options.refine == "exact";

@@ -58,7 +58,7 @@ Answer run(const ShootOptions& options, Console& console) {
         throw UsageError("the scene and the rays cannot both be standard input");
     ShootRequest request;
     if (!options.path.empty()) request.path = EventWord(options.path);
-    const Renderer renderer = load_renderer(options.scene, console);
+    const Renderer renderer = load_smooth_renderer(options.scene, console);
     request.camera = find_camera(renderer.scene(), options.scene.camera);
     const Stopwatch watch;
     const ShotRays shots = shoot(renderer, options, request);

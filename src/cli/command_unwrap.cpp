@@ -73,7 +73,7 @@ Answer run(const UnwrapOptions& options, Console& console) {
     if (!is_standard_stream(options.output)) image_format(options.output);
     if (std::max(options.masks.size(), options.exposures.size()) > options.photos.size())
         throw UsageError("there are more masks or exposures than photographs");
-    const Renderer renderer = load_renderer(options.scene, console);
+    const Renderer renderer = load_smooth_renderer(options.scene, console);
     const UnwrapRequest request = request_of(options, renderer);
     std::vector<UnwrapPhoto> photos;
     for (std::size_t i = 0; i < options.photos.size(); ++i)

@@ -58,6 +58,9 @@ Scene load_scene(const SceneOptions& options, Console& console);
 /// The scene made ready for drawing.
 Renderer load_renderer(const SceneOptions& options, Console& console);
 
+/// The same for answers that know no roughness: a warning names the optics that are rough.
+Renderer load_smooth_renderer(const SceneOptions& options, Console& console);
+
 /// The window and layers asked for. Throws UsageError for texts that say none.
 LayerRequest layer_request(const SceneOptions& options);
 
@@ -111,8 +114,8 @@ struct RenderOptions {
     std::string facets;     // empty: those that are worthwhile
     double max_error = -1;  // < 0: as the scene says
     bool certify = false;
-    std::string grid;       // empty: as the scene says
-    double exposure = 0;    // stops
+    std::string grid;     // empty: as the scene says
+    double exposure = 0;  // stops
     std::string tone = "none";
     FrameOptions frames;
     double white = ToneMapping().white;

@@ -234,6 +234,17 @@ Renderer load_renderer(const SceneOptions& options, Console& console) {
     return renderer;
 }
 
+Renderer load_smooth_renderer(const SceneOptions& options, Console& console) {
+    Renderer renderer = load_renderer(options, console);
+    const Scene& scene = renderer.scene();
+    for (const Mesh& mesh : scene.meshes)
+        if (mesh.role == Role::kOptic && scene.materials[mesh.material].roughness_factor > 0)
+            console.warn(mesh.name +
+                         " is rough, and answers are those of a smooth optic: where the middle of what it "
+                         "shows of a ray lies");
+    return renderer;
+}
+
 LayerRequest layer_request(const SceneOptions& options) {
     LayerRequest request;
     if (!options.crop.empty()) {

@@ -5,11 +5,10 @@
 #include <numbers>
 
 #include "shade/lights/light_sample.h"
+#include "shade/microfacets.h"
 
 namespace trilens {
 namespace {
-
-constexpr double kLeastCosine = 1e-4;  // between view and normal: a shading normal may look away
 
 // Below it a lobe is narrower than what double numbers tell from one direction.
 constexpr double kPolished = 1e-3;
@@ -19,12 +18,6 @@ double power4(double x) {
 }
 double power5(double x) {
     return power4(x) * x;
-}
-
-/// Source: glTF 2.0, B.3.1 (Trowbridge and Reitz).
-double distribution(double alpha2, double cos_half) {
-    const double f = cos_half * cos_half * (alpha2 - 1) + 1;
-    return alpha2 / (std::numbers::pi * f * f);
 }
 
 /// G over 4 N.L N.V. Source: glTF 2.0, B.3.3 (Smith's, separable).
@@ -59,9 +52,9 @@ ArrivedLight arrived_from(const ViewedSurface& surface, const Vec3& toward, cons
     // Half vectors turn half as far as the light does; GGX's width is a slope's.
     const double r = std::max(surface.roughness, kLeastRoughness), alpha = r * r, wider = spread / 2;
     const double alpha2 = std::min(alpha * alpha + wider * wider, 1.0);
-    const double dv = distribution(alpha2, dot(surface.normal, half)) *
+    const double dv = ggx_distribution(alpha2, dot(surface.normal, half)) *
                       visibility(alpha2, std::max(dot(surface.normal, toward), 0.0),
-                                 std::max(dot(surface.normal, surface.view), kLeastCosine));
+                                 std::max(dot(surface.normal, surface.view), kLeastViewCosine));
     return {matt, p * matt, dv * (1 - p) * irradiance, dv * p * irradiance};
 }
 
@@ -81,15 +74,15 @@ LobeDirection lobe_direction(const ViewedSurface& surface, std::size_t sample, s
     const double cos_light = dot(surface.normal, direction.toward);
     if (!(view_half > 0 && cos_light > 0)) return {};
     // f N.L over the density D N.H / (4 V.H), less Fresnel's term.
-    const double cos_view = std::max(dot(surface.normal, surface.view), kLeastCosine);
+    const double cos_view = std::max(dot(surface.normal, surface.view), kLeastViewCosine);
     const double weight = 4 * visibility(alpha2, cos_light, cos_view) * cos_light * view_half / cos_half /
                           static_cast<double>(count);
     const double p = power5(1 - std::min(view_half, 1.0));
     direction.glossy = weight * (1 - p);
     direction.grazing = weight * p;
     if (polished) return direction;
-    direction.side =
-        std::sqrt(4 * view_half / (static_cast<double>(count) * distribution(alpha2, cos_half) * cos_half));
+    direction.side = std::sqrt(4 * view_half /
+                               (static_cast<double>(count) * ggx_distribution(alpha2, cos_half) * cos_half));
     return direction;
 }
 

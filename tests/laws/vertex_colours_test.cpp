@@ -30,7 +30,7 @@ std::string wall_scene(const std::string& material, double z, const std::string&
            mirror + "]}";
 }
 
-const char* const kMirror = R"(, {"name": "mirror", "role": "optic", "material": "chrome", "primitive":
+const char* const kFlatMirror = R"(, {"name": "mirror", "role": "optic", "material": "chrome", "primitive":
     {"type": "plane", "center": [0, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [60, 60]}})";
 
 /// The colour of the wall at a point.
@@ -38,35 +38,35 @@ Vec3 painted(double x, double y) {
     return {0.5 * (x + 8) / 16, (y + 8) / 16, 0.75 * 0.2};
 }
 
-double value(const Image& image, const char* channel, std::size_t pixel) {
+double value_at(const Image& image, const char* channel, std::size_t pixel) {
     return double{image.find(channel)->floats()[pixel]};
 }
 
-constexpr Engine kEngines[] = {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth};
+constexpr Engine kThreeEngines[] = {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth};
 
 }  // namespace
 
 TEST_CASE("colours at points: what a mirror shows of a wall has the formula's colour at each point",
           "[laws][law]") {
     // In a mirror at z = 0, of a wall behind the camera.
-    const auto world = world_from("wall", wall_scene(R"(, "unlit": true)", 6, kMirror), 4);
-    for (const Engine engine : kEngines) {
+    const auto world = world_from("wall", wall_scene(R"(, "unlit": true)", 6, kFlatMirror), 4);
+    for (const Engine engine : kThreeEngines) {
         INFO("engine " << static_cast<int>(engine));
         const Image image = drawn_by(*world, 1, engine);
         for (std::size_t pixel = 0; pixel < 16 * 12; ++pixel) {
             const Vec3 expected =
-                painted(value(image, "reflectP.X", pixel), value(image, "reflectP.Y", pixel));
-            CHECK(value(image, "R", pixel) == Approx(expected.x).margin(1e-6));
-            CHECK(value(image, "G", pixel) == Approx(expected.y).margin(1e-6));
-            CHECK(value(image, "B", pixel) == Approx(expected.z).margin(1e-6));
+                painted(value_at(image, "reflectP.X", pixel), value_at(image, "reflectP.Y", pixel));
+            CHECK(value_at(image, "R", pixel) == Approx(expected.x).margin(1e-6));
+            CHECK(value_at(image, "G", pixel) == Approx(expected.y).margin(1e-6));
+            CHECK(value_at(image, "B", pixel) == Approx(expected.z).margin(1e-6));
         }
     }
     // With several samples a pixel shows the mean, which is what its middle shows of what is straight.
     const Image one = drawn_by(*world, 1, Engine::kLimitTruth);
-    for (const Engine engine : kEngines) {
+    for (const Engine engine : kThreeEngines) {
         const Image many = drawn_by(*world, 4, engine);
         for (std::size_t pixel = 0; pixel < 16 * 12; ++pixel)
-            CHECK(value(many, "R", pixel) == Approx(value(one, "R", pixel)).margin(1e-5));
+            CHECK(value_at(many, "R", pixel) == Approx(value_at(one, "R", pixel)).margin(1e-5));
     }
 }
 
@@ -79,13 +79,13 @@ TEST_CASE("colours at points: a matt wall reflects their share of light, a blend
         world_from("wall", wall_scene(R"(, "unlit": true, "alphaMode": "blend")", -2, ""), 4);
     REQUIRE(blended->blended);
     const Image plain = drawn_by(*unlit, 1, Engine::kExact);
-    for (const Engine engine : kEngines) {
+    for (const Engine engine : kThreeEngines) {
         const Image dim = drawn_by(*matt, 1, engine), through = drawn_by(*blended, 1, engine);
         for (std::size_t pixel = 0; pixel < 16 * 12; ++pixel) {
-            CHECK(value(dim, "G", pixel) == Approx(0.5 * value(plain, "G", pixel)).margin(1e-6));
-            const double alpha = value(plain, "R", pixel) / 0.5;  // both grow with x alone
-            CHECK(value(through, "G", pixel) ==
-                  Approx(alpha * value(plain, "G", pixel) + (1 - alpha) * 0.25).margin(1e-6));
+            CHECK(value_at(dim, "G", pixel) == Approx(0.5 * value_at(plain, "G", pixel)).margin(1e-6));
+            const double alpha = value_at(plain, "R", pixel) / 0.5;  // both grow with x alone
+            CHECK(value_at(through, "G", pixel) ==
+                  Approx(alpha * value_at(plain, "G", pixel) + (1 - alpha) * 0.25).margin(1e-6));
         }
     }
 }

@@ -93,6 +93,15 @@ TEST_CASE("optics of a glTF: by name, by extras, by material", "[scene]") {
         CHECK(warns(scene, "material 'paint' is drawn as a perfect mirror on an optic"));
     }
     CHECK_THROWS_AS(load(write_gltf(folder, parts), {{"sqare"}, {}, ""}), UsageError);
+    // Up to 0.3 it stays as rough as it is.
+    parts.materials =
+        R"([{"name":"steel","pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0.25}}])";
+    scene = load(write_gltf(folder, parts));
+    CHECK(scene.meshes[0].role == Role::kObject);
+    scene = load(write_gltf(folder, parts), {{"squ*"}, {}, ""});
+    CHECK(scene.meshes[0].role == Role::kOptic);
+    CHECK(scene.materials[scene.meshes[0].material].roughness_factor == 0.25);
+    CHECK(!warns(scene, "is drawn as a perfect mirror"));
 
     // Extras say more than the material, and more than the name.
     parts.materials =

@@ -8,6 +8,7 @@
 
 #include "reflect/reflection.h"
 #include "refract/refraction.h"
+#include "shade/microfacets.h"
 #include "shade/optic_weights.h"
 #include "shade/shade.h"
 
@@ -101,6 +102,35 @@ std::vector<Branch> glass_branches(const Interface& interface, Colours colours) 
     return ways;
 }
 
+double alpha_of(const PathWorld& world, Id optic) {
+    const double roughness = world.optics[optic].material->roughness_factor;
+    return roughness * roughness;
+}
+
+/// Of what leaves a microfacet in proportion to how much of it is seen, takes away what others mask on its
+/// way out, and what would go to the wrong side. With visible normals that is all that is left of the BRDF,
+/// or of the BTDF, times the cosine, over the density. Source: Heitz 2018.
+void mask_microfacets(const RoughSurface& surface, const Vec3& microfacet, std::vector<Branch>& ways) {
+    const double density = visible_density(surface, microfacet), cosine = dot(surface.view, microfacet);
+    std::erase_if(ways, [&](Branch& way) {
+        const bool reflects = way.step.event == Event::kReflect;
+        const double out = dot(surface.normal, way.direction) * (reflects ? 1 : -1);
+        if (!(out > 0)) return true;
+        way.weight *= ggx_masking(surface.alpha * surface.alpha, out);
+        // Directions turn four times as far, in solid angle, as microfacets that mirror; of those that
+        // refract Snell's law tells (Walter et al. 2007, equation 17).
+        double turn = 4 * cosine;
+        if (!reflects) {
+            const double behind = -dot(way.direction, microfacet), sine2 = 1 - cosine * cosine;
+            const double eta = sine2 > 0 ? std::sqrt((1 - behind * behind) / sine2) : 1;
+            const double off = eta * cosine - behind;
+            turn = behind > 0 ? off * off / behind : 0;
+        }
+        way.lobe = density > 0 ? turn / density : 0;
+        return false;
+    });
+}
+
 }  // namespace
 
 Vec3 body_transmittance(const PathWorld& world, Id body, double way) {
@@ -109,16 +139,20 @@ Vec3 body_transmittance(const PathWorld& world, Id body, double way) {
 
 std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours) {
     const PathOptic& optic = world.optics[at.optic];
-    const Vec3 normal = at.front ? at.normal : -at.normal;
+    const Vec3 facing = at.front ? at.normal : -at.normal;
+    const bool is_rough = at.microfacet != Vec3(0);
+    const Vec3 normal = is_rough ? at.microfacet : facing;
     if (optic.mirror) {
         const double cosine = std::clamp(-dot(at.incoming, normal), 0.0, 1.0);
         const Vec3 weight = optic_weights(*optic.material, {cosine, at.front}, world.fresnel).reflect;
-        return {{{at.optic, Event::kReflect},
-                 mirrored(at.incoming, normal),
-                 masked(weight, colours),
-                 media,
-                 colours,
-                 true}};
+        std::vector<Branch> way{{{at.optic, Event::kReflect},
+                                 mirrored(at.incoming, normal),
+                                 masked(weight, colours),
+                                 media,
+                                 colours,
+                                 true}};
+        if (is_rough) mask_microfacets({facing, -at.incoming, alpha_of(world, at.optic)}, at.microfacet, way);
+        return way;
     }
 
     const std::optional<MediaSides> sides = sides_of(media, at.optic, at.front);
@@ -132,7 +166,16 @@ std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Me
                  interface.after,
                  colours,
                  true}};
-    return glass_branches(interface, colours);
+    std::vector<Branch> ways = glass_branches(interface, colours);
+    if (is_rough) mask_microfacets({facing, -at.incoming, alpha_of(world, at.optic)}, at.microfacet, ways);
+    return ways;
+}
+
+Meeting with_microfacet(const PathWorld& world, Meeting at, const Vec2& place) {
+    const double alpha = alpha_of(world, at.optic);
+    if (alpha > 0)
+        at.microfacet = visible_normal({at.front ? at.normal : -at.normal, -at.incoming, alpha}, place);
+    return at;
 }
 
 namespace {

@@ -42,6 +42,7 @@ struct Pending {
     double turned = 1;
     bool front = true;
     Vec3 first_weight{1}, weight{1};
+    double lobe = 0;
 };
 
 class Follower {
@@ -53,6 +54,10 @@ class Follower {
     void start(const PathStart& from);
     void run(const Pending& from);
     void go_on(const Pending& from, Id segment, const NextOptic& next);
+    /// The meeting after `before` others.
+    Meeting turned(const Meeting& at, std::size_t before) const {
+        return params_.rough ? with_microfacet(world_, at, params_.rough->place(before)) : at;
+    }
 
     const PathWorld& world_;
     const FollowParams& params_;
@@ -62,9 +67,9 @@ class Follower {
 };
 
 void Follower::start(const PathStart& from) {
-    const Meeting& first = from.first;
+    const Meeting first = turned(from.first, 0);
     const std::vector<Branch> ways = branches(world_, first, from.around, kAllColours);
-    if (ways.empty()) followed_.cut.lost += Vec3(1);
+    if (ways.empty() && first.microfacet == Vec3(0)) followed_.cut.lost += Vec3(1);
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
         const bool reflects = way_on->step.event == Event::kReflect;
         if (!(reflects ? world_.reflect : world_.refract)) continue;
@@ -78,13 +83,15 @@ void Follower::start(const PathStart& from) {
         pending.front = first.front;
         pending.first_weight = way_on->weight;
         pending.weight = first_weight(way_on->colours);
+        pending.lobe = way_on->lobe;
         waiting_.push_back(pending);
     }
 }
 
 void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
-    const std::vector<Branch> ways = branches(world_, next.meeting, from.branch.media, from.branch.colours);
-    if (ways.empty()) followed_.cut.lost += from.first_weight * from.weight;
+    const Meeting meeting = turned(next.meeting, from.steps);
+    const std::vector<Branch> ways = branches(world_, meeting, from.branch.media, from.branch.colours);
+    if (ways.empty() && meeting.microfacet == Vec3(0)) followed_.cut.lost += from.first_weight * from.weight;
     const PathSegment& parent = followed_.segments[segment];
     const Vec3 arrived = from.weight * body_transmittance(world_, parent.medium, next.distance);
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
@@ -99,6 +106,7 @@ void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
         pending.turned = std::fabs(dot(next.meeting.incoming, next.meeting.normal));
         pending.front = next.meeting.front;
         pending.weight = arrived * way_on->weight;
+        pending.lobe = from.lobe + way_on->lobe;
         waiting_.push_back(pending);
     }
 }
@@ -120,10 +128,12 @@ void Follower::run(const Pending& from) {
     segment.medium = active_medium(world_, from.branch.media);
     segment.ray = {from.point, from.branch.direction};
     segment.way = from.way;
+    segment.first_weight = from.first_weight;
     segment.weight = from.weight;
     segment.turned = from.turned;
     segment.front = from.front;
     segment.refraction = from.branch.refraction;
+    segment.lobe = from.lobe;
 
     std::optional<NextOptic> next;
     if (world_.max_depth > 0)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "paths/trace/path_world.h"
+#include "shade/microfacets.h"
 
 namespace trilens {
 
@@ -23,6 +24,7 @@ struct PathSegment {
     Id medium = kNone;        // the optic in whose glass it runs; kNone: in air
     Ray ray;                  // unit direction, from where it starts
     double way = 0;           // length of the path from the eye to where it starts
+    Vec3 first_weight{1};     // of the light, at the first optic
     Vec3 weight{1};           // of the light for all that happened behind the first optic up to its start
     double next = std::numeric_limits<double>::infinity();  // distance to the next optic, or infinity
     // Distance to an optic that lies on an object where it is met, or infinity; the object is what is seen
@@ -31,6 +33,7 @@ struct PathSegment {
     bool front = true;   // its start was met from the front
     Vec3 refraction{0};  // see Branch, at its start
     double turned = 1;   // cosine of the angle between the ray that arrived at its start and the surface
+    double lobe = 0;     // see Branch, summed over the rough surfaces so far
     Hit hit;             // where objects are asked for: the first before the next optic, t a distance
     bool ends = true;    // it meets an object, or no other optic: nothing goes on from it
 };
@@ -62,6 +65,7 @@ inline constexpr double kLeastWeight = 1.0 / 512;
 struct FollowParams {
     const Tracer* objects = nullptr;     // what blocks the way; null: nothing does
     double least_weight = kLeastWeight;  // the principal paths are followed whatever they carry
+    const RoughWay* rough = nullptr;     // how rough optics turn the rays; null: as smooth ones do
 };
 
 struct FollowedPaths {

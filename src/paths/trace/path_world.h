@@ -121,6 +121,9 @@ struct Meeting {
     Vec3 point{0};      // on the surface, world
     Vec3 normal{0};     // unit, out of the front side
     bool front = true;  // the ray comes to the front: from outside the body
+    // Unit, on the ray's side: of the microfacet of a rough surface that it meets; zero: the surface is
+    // smooth.
+    Vec3 microfacet{0};
 };
 
 /// One way that light goes on from a meeting.
@@ -133,6 +136,9 @@ struct Branch {
     bool principal = true;
     Vec3 refraction{
         0};  // of glass, per colour: squared sine of the angle of refraction; from 1 on there is none
+    // One over the density of the directions, per solid angle, in which a rough surface sends light so; 0:
+    // the surface is smooth.
+    double lobe = 0;
 };
 
 /// The ways that light goes on from a meeting, at most five, the principal one first: mirrored by a mirror;
@@ -141,8 +147,15 @@ struct Branch {
 /// add up to 1 in each colour that the ray has, but for what a tint or a mirror takes away. Empty where the
 /// ray is inside of too many bodies to tell.
 ///
+/// At a microfacet light goes on as at a smooth surface with its normal, less what other microfacets mask;
+/// ways to the wrong side of the surface are left out.
+///
 /// On either side lies what sides_of says. A normal beyond grazing counts as grazing for refraction.
 std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours);
+
+/// The meeting at one of the microfacets that the ray sees of a rough optic (see visible_normal); that of a
+/// smooth one as it is.
+Meeting with_microfacet(const PathWorld& world, Meeting at, const Vec2& place);
 
 // The bodies of glass that a ray starts in: what a camera looks out of.
 

@@ -10,6 +10,7 @@
 #include "render/frame/camera_rays.h"
 #include "render/picture/channels.h"
 #include "render/picture/fragments.h"
+#include "render/picture/rough_light.h"
 #include "render/picture/sample_colour.h"
 
 namespace trilens {
@@ -56,8 +57,9 @@ class FilteredSamples {
         colours_.resize(grid_.size());
         const RayDifferentials differentials(world, viewer, grid_);
         parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
-            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from),
-                           grid_.side == 1 || has_caustics(world) ? &differentials : nullptr);
+            sample_colours(
+                world, views, from, std::span(colours_).subspan(from, to - from),
+                grid_.side == 1 || has_caustics(world) || has_rough_optics(world) ? &differentials : nullptr);
             for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
         });
     }
@@ -198,7 +200,7 @@ void find_colours(const BandSource& source, const Band& band, std::size_t first,
     std::vector<SampleColour> samples(colours.size() * per_pixel);
     const RayDifferentials differentials(world, viewer, grid);
     sample_colours(world, band.views, first * per_pixel, samples,
-                   has_caustics(world) ? &differentials : nullptr);
+                   has_caustics(world) || has_rough_optics(world) ? &differentials : nullptr);
     for (std::size_t i = 0; i < colours.size(); ++i)
         colours[i] = mean_colour(filter, std::span(samples).subspan(i * per_pixel, per_pixel));
 }

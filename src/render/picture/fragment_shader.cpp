@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/picture/rough_light.h"
 #include "render/picture/sample_colour.h"
 
 namespace trilens {
@@ -382,8 +383,10 @@ void FragmentContributions::shade() {
 void shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
                      std::span<ShadedFragment> shaded) {
     FragmentContributions contributions(shading);
+    const bool has_rough = has_rough_optics(shading.world);
     for (std::size_t f = 0; f < fragments.size(); ++f) {
         const SampleView& view = *fragments[f].view;
+        if (has_rough && shade_rough(shading, fragments[f], shaded[f].colour)) continue;
         shaded[f].colour = unlit_colour(shading.world, shading.views, view);
         for_each_contribution(shading.world, shading.views, view, [&](const Contribution& contribution) {
             contributions.add({shading, fragments[f], contribution}, shaded[f]);

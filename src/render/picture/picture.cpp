@@ -214,6 +214,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     const LayerRequest layers = checked_layers(world, request.layers);
     check_certify(request);
     check_film_fits(world, layers, sink != nullptr);
+    warn_of_roughness(world, request.frame, request.engine, warn);
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/picture/rough_light.h"
 #include "render/world/world.h"
 
 namespace trilens {
@@ -30,7 +31,12 @@ class Contributions {
   public:
     Contributions(const World& world, const SampleViews& views, std::size_t first,
                   std::span<SampleColour> colours, const RayDifferentials* differentials)
-        : world_(world), views_(views), first_(first), colours_(colours), differentials_(differentials) {}
+        : world_(world),
+          views_(views),
+          first_(first),
+          colours_(colours),
+          differentials_(differentials),
+          has_rough_(has_rough_optics(world)) {}
 
     void add_sample(std::size_t index);
     void shade();
@@ -38,11 +44,14 @@ class Contributions {
   private:
     static constexpr std::size_t kMost = 2 * Segments::kMost;
 
+    std::optional<SampleColour> rough(std::size_t index) const;
+
     const World& world_;
     const SampleViews& views_;
     std::size_t first_;
     std::span<SampleColour> colours_;
     const RayDifferentials* differentials_;
+    bool has_rough_;
     std::size_t count_ = 0;
     std::array<SeenAlong, kMost> seen_;
     std::array<Contribution, kMost> contributions_;
@@ -51,8 +60,27 @@ class Contributions {
     std::array<std::size_t, kMost> sample_;             // of colours_
 };
 
+/// The colour of a sample that shows a rough optic; none where it shows none.
+std::optional<SampleColour> Contributions::rough(std::size_t index) const {
+    const SampleView& view = views_.samples[first_ + index];
+    if (!has_rough_ || !meets_rough_optic(world_, views_, view)) return std::nullopt;
+    const bool traced = differentials_ && differentials_->are_traced();
+    const int side = differentials_ ? differentials_->side() : 1;
+    RoughGather gather{.ways = rough_ways(world_.scene.render, traced, side), .is_filtered = !traced};
+    if (differentials_) gather.shift = rough_shift(differentials_->place(first_ + index), side);
+    if (differentials_ && side == 1)
+        gather.differential = [&](const PathEnd& end) {
+            return differentials_->of(views_, first_ + index, {{&end.hit, &end.ray}, Vec3(1), &end});
+        };
+    return rough_colour(world_, views_, view, gather);
+}
+
 void Contributions::add_sample(std::size_t index) {
     const SampleView& view = views_.samples[first_ + index];
+    if (const std::optional<SampleColour> gathered = rough(index)) {
+        colours_[index] = *gathered;
+        return;
+    }
     colours_[index] = unlit_colour(world_, views_, view);
     for_each_contribution(world_, views_, view, [&](const Contribution& contribution) {
         if (count_ == kMost) shade();

@@ -109,6 +109,8 @@ class RayDifferentials {
     int side() const { return grid_.side; }
     /// Whether every ray is exact: light is then to be, too.
     bool are_traced() const;
+    /// Where a sample stands on the film.
+    Vec2 place(std::size_t sample) const { return grid_.position(sample); }
 
   private:
     std::optional<Ray> camera_ray(const SampleView& view, const Vec2& place) const;

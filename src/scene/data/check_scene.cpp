@@ -160,6 +160,9 @@ void SceneCheck::object(const Mesh& whole, const std::string& place) const {
 
 void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {
     require(mesh.material < scene_.materials.size(), place + "/material", "is no material of the scene");
+    const double roughness = scene_.materials[mesh.material].roughness_factor;
+    require(roughness >= 0 && roughness <= kMostRoughness, place + "/material",
+            "has a roughness that is not in 0..0.3");
     require(mesh.resolution >= 1 && mesh.resolution <= kMaxResolution, place + "/resolution",
             "is not in 1.." + std::to_string(kMaxResolution));
     require(mesh.primitive || !mesh.cage.points.empty(), place, "an optic has a primitive or a cage");

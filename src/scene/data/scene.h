@@ -28,6 +28,8 @@ inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
 inline constexpr int kMostDepth = 64;  // optic hits after the first
 inline constexpr int kMostLightSamples = 4096;
+inline constexpr int kMostRoughSamples = 65536;
+inline constexpr double kMostRoughness = 0.3;  // of an optic
 inline constexpr double kMostMaxError = 1000;  // pixels
 
 /// How samples make a pixel's colour: see make_pixel_filter.
@@ -136,8 +138,10 @@ struct RenderSettings {
     int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;
     bool fresnel = true;
-    double max_error = 0;  // pixels of displacement that facets are divided for; 0: only where they lie
-    bool certify = false;  // mirrors' facets are held to max_error by proof, which is then above 0
+    double max_error = 0;    // pixels of displacement that facets are divided for; 0: only where they lie
+    int rough_samples = 16;  // ways of light over rough optics: of each fragment that is projected
+    int rough_truth_samples = 128;  // of each pixel that is traced
+    bool certify = false;           // mirrors' facets are held to max_error by proof, which is then above 0
 };
 
 /// A file as it was when it was read.

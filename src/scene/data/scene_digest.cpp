@@ -259,8 +259,12 @@ std::string scene_digest(const Scene& scene) {
     add(meshes, digest);
     add(lights, digest);
     add(volumes, digest);
-    const auto& [max_depth, direct, reflect, refract, fresnel, max_error, certify] = render;
+    const auto& [max_depth, direct, reflect, refract, fresnel, max_error, rough_samples, rough_truth_samples,
+                 certify] = render;
     digest.add_all(max_depth, direct, reflect, refract, fresnel, max_error);
+    if (rough_samples != RenderSettings().rough_samples ||
+        rough_truth_samples != RenderSettings().rough_truth_samples)
+        digest.add_all(rough_samples, rough_truth_samples);
     if (certify) digest.add(certify);  // keys of older sweeps stay
     return digest.digits();
 }

@@ -170,7 +170,8 @@ class SceneWriter {
         return material_names_[key] = name;
     }
 
-    /// An optic is a perfect mirror or clear glass. Returns whether the material was not.
+    /// An optic is a mirror or clear glass, rough to 0.3 at most, else perfect. Returns whether the material
+    /// was not.
     bool make_optical(Json& material) {
         const std::string name = material.at("name").get<std::string>();
         const bool glass = material.value("transmissionFactor", 0.0) > 0;
@@ -178,15 +179,15 @@ class SceneWriter {
         material.erase("unlit");
         material["metallicFactor"] = glass ? 0 : 1;
         if (glass) material["transmissionFactor"] = 1;
-        material["roughnessFactor"] = 0;
+        const double rough = before.value("roughnessFactor", 0.0);
+        if (rough > kMostRoughness) material["roughnessFactor"] = 0;
         for (const char* key : {"baseColorTexture", "metallicRoughnessTexture", "transmissionTexture",
                                 "alphaMode", "alphaFactor", "alphaCutoff", "occlusionTexture"})
             material.erase(key);
         if (material == before) return false;
-        const double metallic = before.value("metallicFactor", 0.0),
-                     rough = before.value("roughnessFactor", 0.0);
+        const double metallic = before.value("metallicFactor", 0.0);
         if ((!glass && metallic != 1) || (glass && before.value("transmissionFactor", 0.0) != 1) ||
-            rough != 0)
+            rough > kMostRoughness)
             out_.warnings.push_back("material '" + name + "' is drawn as a perfect " +
                                     (glass ? "glass" : "mirror") + " on an optic");
         return true;

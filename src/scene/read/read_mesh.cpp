@@ -45,7 +45,11 @@ void check_optic_material(const Node& node, Id index, Reading& reading) {
     if (!mirror && !glass)
         node["material"].fail(optic + "must be a mirror (metallicFactor 1) or glass (transmissionFactor 1)");
     if (mirror && glass) node["material"].fail(optic + "cannot be mirror and glass at once");
-    if (material.roughness_factor != 0) node["material"].fail(optic + "must have roughnessFactor 0");
+    if (material.roughness_factor > kMostRoughness)
+        node["material"].fail(optic + "must have a roughnessFactor of at most " + describe(kMostRoughness));
+    if (material.metallic_roughness_texture.picture && material.roughness_factor > 0)
+        reading.warn(node["material"].place,
+                     "a metallicRoughnessTexture on an optic is ignored: it is rough alike everywhere");
     if (material.base_color_texture) reading.warn(node["material"].place, "a texture on an optic is ignored");
 }
 

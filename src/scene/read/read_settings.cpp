@@ -120,12 +120,18 @@ const std::vector<Field<RenderSettings>>& render_fields() {
             setting("maxDepth", &RenderSettings::max_depth, whole_in(0, kMostDepth),
                     "Optic hits after the first; 0: paths end after their first optic, as if there were no "
                     "other."),
-            std::move(paths), setting("fresnel", &RenderSettings::fresnel, yes_or_no()),
+            std::move(paths),
+            setting("fresnel", &RenderSettings::fresnel, yes_or_no()),
             setting("maxError", &RenderSettings::max_error, number_in(0, kMostMaxError),
                     "Pixels: facets whose predicted displacement against the exact paths is more are "
                     "divided, and at last traced; 0: they are as 'resolution' says, but for those that are "
                     "off by far more than facets of their size are: a pixel at 32 on a film 480 high, by the "
                     "square of both."),
+            setting("roughSamples", &RenderSettings::rough_samples, whole_in(1, kMostRoughSamples),
+                    "How many ways light takes over rough optics to each fragment that is projected; each "
+                    "stands for a part of what their microfacets reflect."),
+            setting("roughTruthSamples", &RenderSettings::rough_truth_samples, whole_in(1, kMostRoughSamples),
+                    "The same of each pixel that is traced, shared among its samples; each is a ray."),
             setting(
                 "certify", &RenderSettings::certify, yes_or_no(),
                 "It is proven at each pixel's middle that what a mirror shows is off by at most 'maxError', "
@@ -171,8 +177,10 @@ const std::vector<Field<Material>>& material_fields() {
             part<Material>("baseColorTexture", ref("texture")),
             setting("unlit", &Material::unlit, yes_or_no()),
             setting("metallicFactor", &Material::metallic_factor, ref("share")),
-            setting("roughnessFactor", &Material::roughness_factor, ref("share"),
-                    "Of an object: how dull its reflections of lights are; see 'brdf'."),
+            setting(
+                "roughnessFactor", &Material::roughness_factor, ref("share"),
+                "Of an object: how dull its reflections of lights are; see 'brdf'. Of an optic, up to 0.3: "
+                "how dull is what it mirrors or lets through; 0: it is polished."),
             choice(
                 "brdf", &Material::brdf,
                 "object: byRoughness: lambert where roughnessFactor is 0; lambert: matt; metallicRoughness: "
@@ -212,7 +220,7 @@ Json material_schema() {
     return object_schema(
         {.title = "a material",
          .description = "glTF's names. An optic needs metallicFactor 1 (mirror) or transmissionFactor 1 "
-                        "(glass), and roughnessFactor 0.",
+                        "(glass), and a roughnessFactor of at most 0.3.",
          .required = {"name"}},
         material_fields());
 }

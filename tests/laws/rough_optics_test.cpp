@@ -1,0 +1,196 @@
+// Rough mirrors and glass: against integrals by quadrature, energy, and what roughness must leave alone.
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include "base/util/parallel.h"
+#include "laws/pictures.h"
+#include "laws/worlds.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+constexpr double kRoughPi = std::numbers::pi;
+
+/// A mirror in the plane z = 0, seen by parallel rays from `eye`, in a sky of this grey.
+std::string flat_scene(double roughness, const std::string& eye, double sky, const std::string& objects = "",
+                       const std::string& material = R"("metallicFactor": 1)") {
+    return R"({"version": 1, "film": {"width": 16, "height": 8},
+        "cameras": [{"name": "main", "type": "orthographic", "ymag": 0.5,
+                     "lookAt": {"eye": )" +
+           eye + R"(, "at": [0, 0, 0], "up": [0, 1, 0]}}],
+        "background": {"color": [)" +
+           std::to_string(sky) + "," + std::to_string(sky) + "," + std::to_string(sky) +
+           R"(]}, "render": {"fresnel": false},
+        "materials": [{"name": "rough", "roughnessFactor": )" +
+           std::to_string(roughness) + "," + material +
+           R"(}, {"name": "white", "unlit": true}],
+        "meshes": [{"name": "mirror", "role": "optic", "material": "rough", "primitive": {"type": "plane",
+            "center": [0, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [60, 60]}})" +
+           objects + "]}";
+}
+
+/// What the mirror shows of directions where `shows` is 1, seen from `view`; by quadrature of the BRDF times
+/// the cosine over half vectors, D G1 G1 V.H / N.V, as glTF's appendix B has D and G1; the normal is +Z.
+double by_quadrature(double roughness, const Vec3& view, const std::function<double(const Vec3&)>& shows) {
+    constexpr int kRings = 1500, kSectors = 720;
+    const double a2 = std::pow(roughness, 4);
+    const auto masking = [&](double cosine) {
+        return 2 / (1 + std::sqrt(1 + a2 * (1 / (cosine * cosine) - 1)));
+    };
+    double sum = 0;
+    for (int i = 0; i < kRings; ++i)
+        for (int j = 0; j < kSectors; ++j) {
+            const double u = (i + 0.5) / kRings, around = 2 * kRoughPi * (j + 0.5) / kSectors;
+            const double cosine = 1 / std::sqrt(1 + a2 * u / (1 - u)), sine = std::sqrt(1 - cosine * cosine);
+            const Vec3 half(sine * std::cos(around), sine * std::sin(around), cosine);
+            const double seen = dot(view, half);
+            const Vec3 out = 2 * seen * half - view;
+            if (!(seen > 0 && out.z > 0)) continue;
+            sum += masking(view.z) * masking(out.z) * seen / (view.z * cosine) * shows(out);
+        }
+    return sum / (kRings * kSectors);
+}
+
+double value_of(const Image& image, const char* channel, std::size_t pixel) {
+    return double{image.find(channel)->floats()[pixel]};
+}
+
+/// With the layers that are not written by default, too.
+Image drawn_whole(World& world, int spp, Engine engine) {
+    world.scene.film.spp = spp;
+    PictureRequest request;
+    request.engine = engine;
+    request.layers.layers = layer_names();
+    return draw_picture(world, request, {}, ignore, nullptr).image;
+}
+
+constexpr Engine kBothEngines[] = {Engine::kExact, Engine::kLimitTruth};
+
+}  // namespace
+
+TEST_CASE("the white furnace: a rough mirror in a white sky shows GGX's albedo, never more than the sky",
+          "[laws][law][oracle]") {
+    for (const double roughness : {0.05, 0.15, 0.3})
+        for (const double height : {0.25, 1.0, 4.0}) {
+            const Vec3 view = normalize(Vec3(1, 0, height));
+            const auto world = world_from(
+                "rough", flat_scene(roughness, "[20,0," + std::to_string(20 * height) + "]", 1), 4);
+            world->scene.render.rough_samples = world->scene.render.rough_truth_samples = 4096;
+            const double albedo = by_quadrature(roughness, view, [](const Vec3&) { return 1.0; });
+            for (const Engine engine : kBothEngines) {
+                INFO("roughness " << roughness << ", height " << height << ", " << engine_name(engine));
+                const Image image = drawn_by(*world, 1, engine);
+                for (std::size_t pixel = 0; pixel < 16 * 8; ++pixel) {
+                    CHECK(value_of(image, "G", pixel) <= 1 + 1e-6);
+                    CHECK(value_of(image, "G", pixel) == Approx(albedo).margin(2e-3));
+                }
+            }
+        }
+}
+
+TEST_CASE("a rough mirror shows the edge of a wall as quadrature does, projected and traced",
+          "[laws][law][oracle]") {
+    // A white wall beyond x = 0, five units before the mirror; the camera looks straight down, from nearer.
+    const std::string wall = R"(, {"name": "wall", "role": "object", "material": "white",
+        "points": [[0,-90,5],[90,-90,5],[90,90,5],[0,90,5]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3]})";
+    for (const double roughness : {0.1, 0.2, 0.3}) {
+        const auto world = world_from("edge", flat_scene(roughness, "[0,0,1]", 0, wall), 4);
+        const auto worst = [&](Engine engine, int samples) {
+            world->scene.render.rough_samples = world->scene.render.rough_truth_samples = samples;
+            const Image image = drawn_by(*world, 1, engine);
+            double most = 0;
+            for (std::size_t pixel = 0; pixel < 16; ++pixel) {
+                const double x = (double(pixel) + 0.5 - 8) / 8;
+                const double shown = by_quadrature(roughness, {0, 0, 1}, [&](const Vec3& out) {
+                    return x + 5 * out.x / out.z > 0 ? 1.0 : 0.0;
+                });
+                most = std::max(most, std::fabs(value_of(image, "G", 4 * 16 + pixel) - shown));
+            }
+            return most;
+        };
+        for (const Engine engine : kBothEngines) {
+            INFO("roughness " << roughness << ", " << engine_name(engine));
+            CHECK(worst(engine, 16) < 0.15);
+            CHECK(worst(engine, 1024) < 0.01);
+        }
+    }
+}
+
+TEST_CASE("rough glass in a white sky gives back no more than comes, and nearly all", "[laws][law]") {
+    for (const char* mesh :
+         {R"("type": "sphere", "center": [0, 0, 0], "radius": 0.45)", R"("type": "plane", "center": [0, 0, 0],
+             "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [60, 60])"}) {
+        std::string text = flat_scene(0.3, "[0.5,0,1]", 1, "", R"("transmissionFactor": 1, "ior": 1.5)");
+        const std::size_t from = text.find(R"("type": "plane")"), to = text.find('}', from);
+        text.replace(from, to - from, mesh);
+        text.replace(text.find(R"("fresnel": false)"), 16, R"("fresnel": true)");
+        const auto world = world_from("glass", text, 8);
+        world->scene.render.rough_samples = 256;
+        for (const Engine engine : kBothEngines) {
+            const Image image = drawn_by(*world, 1, engine);
+            double mean = 0;
+            for (std::size_t pixel = 0; pixel < 16 * 8; ++pixel) {
+                INFO("pixel " << pixel << ", " << engine_name(engine));
+                CHECK(value_of(image, "G", pixel) <= 1 + 1e-6);
+                CHECK(value_of(image, "G", pixel) > 0.8);  // a ball's rim is grazed twice
+                mean += value_of(image, "G", pixel) / (16 * 8);
+            }
+            CHECK(mean > 0.95);
+        }
+    }
+}
+
+TEST_CASE("roughness leaves alone ids and places, smooth optics beside it, and is the same for any threads",
+          "[laws][law]") {
+    const auto balls = [](double left, double right) {
+        const auto ball = [](const char* name, double x) {
+            return std::string(R"({"name": ")") + name + R"(", "role": "optic", "material": ")" + name +
+                   R"(", "primitive": {"type": "sphere", "center": [)" + std::to_string(x) +
+                   R"(, 0, 0], "radius": 0.8}})";
+        };
+        const auto metal = [](const char* name, double roughness) {
+            return std::string(R"({"name": ")") + name + R"(", "metallicFactor": 1, "roughnessFactor": )" +
+                   std::to_string(roughness) + "}";
+        };
+        return R"({"version": 1, "film": {"width": 40, "height": 24}, "cameras": [{"name": "main", "yfov": 34,
+            "lookAt": {"eye": [0, 1, 5], "at": [0, 0, 0], "up": [0, 1, 0]}}], "background": {"color": [0.3, 0.5, 0.8]},
+            "materials": [)" +
+               metal("left", left) + "," + metal("right", right) +
+               R"(, {"name": "checks", "unlit": true, "baseColorTexture": {"pattern": "checker", "count": [9, 9]}}],
+            "meshes": [)" +
+               ball("left", -3) + "," + ball("right", 0.9) +
+               R"(, {"name": "floor", "role": "object", "material": "checks", "primitive": {"type": "plane",
+                 "center": [0, -0.8, 0], "normal": [0, 1, 0], "tangent": [1, 0, 0], "size": [9, 9]}}]})";
+    };
+    const auto smooth = world_from("balls", balls(0, 0), 12), rough = world_from("balls", balls(0, 0.2), 12);
+    for (const Engine engine : kBothEngines)
+        for (const int spp : {1, 2}) {
+            INFO(engine_name(engine) << ", spp " << spp);
+            const Image before = drawn_whole(*smooth, spp, engine), after = drawn_whole(*rough, spp, engine);
+            CHECK(before.find("optic.object")->ids() == after.find("optic.object")->ids());
+            CHECK(before.find("reflectID.primitive")->ids() == after.find("reflectID.primitive")->ids());
+            CHECK(before.find("reflectP.X")->floats() == after.find("reflectP.X")->floats());
+            CHECK(before.find("G")->floats() != after.find("G")->floats());
+            // A smooth ball beside a rough one that it cannot see: the same bits.
+            std::size_t compared = 0;
+            const std::vector<std::uint32_t>& shown = before.find("optic.object")->ids();
+            for (std::size_t pixel = 0; pixel < shown.size(); ++pixel) {
+                if (shown[pixel] == 1) continue;
+                const bool sees_rough = before.find("path.count")->ids()[pixel] > 1;
+                if (sees_rough || spp > 1) continue;
+                CHECK(value_of(before, "G", pixel) == value_of(after, "G", pixel));
+                ++compared;
+            }
+            CHECK((spp > 1 || compared > 300));
+            const int threads = thread_count();
+            set_thread_count(threads == 1 ? 3 : 1);
+            const Image again = drawn_by(*rough, spp, engine);
+            set_thread_count(0);
+            CHECK(again.find("G")->floats() == after.find("G")->floats());
+        }
+}
