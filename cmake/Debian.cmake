@@ -98,6 +98,7 @@ foreach(component IN LISTS components)
 endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${own}, ${package_program} (= ${PROJECT_VERSION}), libglm-dev")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${own}")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS fonts-dejavu-core)  # of labels
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ${package_viewer})
 set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "${own}, ${package_program} (= ${PROJECT_VERSION})")
 if(TRILENS_PYTHON)

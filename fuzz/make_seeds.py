@@ -60,6 +60,11 @@ def scenes():
 def tables():
     write("points", "plain", "# points\n0 0 1\n1.5,-2,3e-2\n\n-1, 0 , 4\n")
     write("points", "header", "x,y,z\n0,0,1\n")
+    write("points", "colored", "0,0,1,0.5,0.25,1\n")
+    head = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n" \
+           "property uchar blue\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+    write("points", "ply-text", f"ply\nformat ascii 1.0\n{head}0 0 1 255 0 9\n1.5 -2 3e-2 1 2 3\n3 0 1 0\n")
+    write("points", "ply-binary", f"ply\nformat binary_little_endian 1.0\n{head}".encode() + struct.pack("<3f3B3f3BB3i", 0, 0, 1, 255, 0, 9, 1, 2, 3, 4, 5, 6, 3, 0, 1, 0))
     write("pairs", "plain", "320,240,0.5,-0.5,1.5\n10.5,20.25,1,2,3\n")
     write("pairs", "header", "x,y,X,Y,Z,sigma,camera,path,image\n3,4,0.5,0,1,0.25,c,R,0\n5,6,1,1,1,0.5,c,TT,1\n")
     write("wish", "driver", subprocess.run([PROGRAM, "design", "--example"], check=True, capture_output=True).stdout)

@@ -24,7 +24,7 @@ constexpr std::array kTargets{
     FuzzTarget{"obj", "a cage or model", obj_text},
     FuzzTarget{"pairs", "pairs of pixels and points", pairs_text},
     FuzzTarget{"png", "a texture", png_file},
-    FuzzTarget{"points", "points as text", points_text},
+    FuzzTarget{"points", "points as text or PLY", points_text},
     FuzzTarget{"run", "a sweep's folder: manifest, plan, a run", run_folder},
     FuzzTarget{"scene", "a scene file", scene_text},
     FuzzTarget{"sweep", "a sweep file", sweep_file},

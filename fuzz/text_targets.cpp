@@ -6,6 +6,7 @@
 #include "scene/data/scene_digest.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/obj.h"
+#include "scene/formats/point_cloud.h"
 #include "scene/formats/volume_file.h"
 #include "trilens/animation.h"
 #include "trilens/design.h"
@@ -58,9 +59,11 @@ Answer scene_animation(std::string_view bytes) {
 
 Answer points_text(std::string_view bytes) {
     return answer([&] {
-        const std::vector<Vec3> points = parse_points(std::string(bytes), "fuzzed.txt");
-        require(!points.empty(), "no point, and no word of it");
-        for (const Vec3& point : points)
+        const std::string name = bytes.starts_with("ply") ? "fuzzed.ply" : "fuzzed.txt";
+        const ColoredPoints cloud = parse_cloud(std::string(bytes), name);
+        require(!cloud.points.empty(), "no point, and no word of it");
+        require(cloud.colors.empty() || cloud.colors.size() == cloud.points.size(), "colours of some points");
+        for (const Vec3& point : cloud.points)
             for (int axis = 0; axis < 3; ++axis)
                 require(std::abs(point[axis]) <= kLargestCoordinate, "a point beyond the largest coordinate");
     });

@@ -177,7 +177,9 @@ void bind_image(py::module_& module) {
             "those between the outlines of optics and of their facets; deep_pixels: that lack light for "
             "maxDepth;\nfragment_pixels (shaded once or a few times for all their samples), fragments (of "
             "these pixels),\nfragments_per_pixel, rays_by_sample (shaded at each sample), "
-            "pixels_shaded_by_sample (that have such rays);\nprepare_seconds, draw_seconds.")
+            "pixels_shaded_by_sample (that have such rays);\nmarks (images of points and labels that are "
+            "painted), hidden_marks (on the film, but hidden),\nunseen_marks (points and labels without an "
+            "image); prepare_seconds, draw_seconds.")
         .def("rgb", rgb_of, py::arg("layer") = "",
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"
              "linear Rec.709. Raises KeyError where the image has none.")
@@ -248,8 +250,10 @@ void bind_image(py::module_& module) {
         "position: directID.object, directID.primitive, directP.X, directP.Y, directP.Z, directP.length "
         "(what the\n"
         "camera sees itself).\n"
-        "bound: by how many pixels what a mirror shows is displaced at most, as is proven (render's certify).\n"
-        "coverage: coverage.object (the mesh that the camera sees first at the pixel's centre), coverage.min, "
+        "bound: by how many pixels what a mirror shows is displaced at most, as is proven (render's "
+        "certify).\n"
+        "coverage: coverage.object (the mesh that the camera sees first at the pixel's centre), "
+        "coverage.min, "
         "coverage.max\n(shares of the pixel between which the part that shows it lies, as is proven).");
 }
 

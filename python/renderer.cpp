@@ -170,6 +170,9 @@ HeldImage draw(const Renderer& renderer, PictureRequest request, const Job& job,
     statistics["probes"] = probes;
     statistics["outline_pixels"] = picture.statistics.outline_pixels;
     statistics["deep_pixels"] = picture.statistics.deep_pixels;
+    statistics["marks"] = picture.statistics.marks;
+    statistics["hidden_marks"] = picture.statistics.hidden_marks;
+    statistics["unseen_marks"] = picture.statistics.unseen_marks;
     statistics["fragment_pixels"] = picture.statistics.fragment_pixels;
     statistics["fragments"] = picture.statistics.fragments;
     statistics["fragments_per_pixel"] = picture.statistics.fragments_per_pixel();

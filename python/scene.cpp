@@ -122,6 +122,13 @@ void bind_parts(py::module_& module) {
                 field("most", &VolumeInfo::most, "The greatest."));
     volume.def_property_readonly(
         "bounds", [](const VolumeInfo& info) { return bounds_of(info.bounds); }, "As Mesh.bounds.");
+
+    py::class_<CloudInfo> cloud(module, "PointCloud", "A point cloud of the scene.");
+    bind_fields(cloud, field("name", &CloudInfo::name, "Its name."),
+                field("points", &CloudInfo::points, "How many."),
+                field("has_colors", &CloudInfo::has_colors, "Whether its file has one for each."));
+    cloud.def_property_readonly(
+        "bounds", [](const CloudInfo& info) { return bounds_of(info.bounds); }, "As Mesh.bounds.");
 }
 
 void bind_readers(py::module_& module) {
@@ -200,6 +207,11 @@ void bind_scene(py::module_& module) {
             "In scene order: the index is the object id of images.")
         .def_property_readonly(
             "volumes", [](const Scene& scene) { return make_scene_info(scene).volumes; }, "In scene order.")
+        .def_property_readonly(
+            "points", [](const Scene& scene) { return make_scene_info(scene).points; }, "In scene order.")
+        .def_property_readonly(
+            "labels", [](const Scene& scene) { return make_scene_info(scene).labels; },
+            "Their texts, in scene order.")
         .def_property_readonly(
             "bounds", [](const Scene& scene) { return bounds_of(make_scene_info(scene).bounds); },
             "The box around everything, as Mesh.bounds.")

@@ -258,6 +258,10 @@ HeightGrid read_heights(const std::string& file) {
     return library_to_read(file).read_heights(file);
 }
 
+TextMask draw_letters(const TextStyle& style) {
+    return library_to_read(style.font).draw_letters(style);
+}
+
 std::vector<unsigned char> encode_png(int width, int height, std::span<const float> rgb) {
     return encode_named_png("PNG", width, height, rgb);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/description/marks.h"
 #include "base/description/material.h"
 #include "base/image/height_grid.h"
 #include "base/image/image.h"
@@ -21,6 +22,7 @@ struct PictureLibrary {
     std::shared_ptr<const Texture> (*decode)(std::span<const unsigned char> encoded,
                                              const std::string& name) = nullptr;
     HeightGrid (*read_heights)(const std::string& file) = nullptr;
+    TextMask (*draw_letters)(const TextStyle& style) = nullptr;
     void (*set_threads)(int threads) = nullptr;
 };
 
@@ -73,6 +75,11 @@ std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> enc
 /// Reads the numbers of the first channel of any picture that OpenImageIO knows, all of its data window: see
 /// HeightGrid. Throws InputError, also where a side has more than kMostHeightsSide samples.
 HeightGrid read_heights(const std::string& file);
+
+/// A line of text as OpenImageIO and FreeType draw it, as small as it goes. Throws InputError(file, "") with
+/// the font's file, or "" where there is no DejaVu Sans, if the font cannot be read; InputError("", "") for a
+/// text without letters, or too large.
+TextMask draw_letters(const TextStyle& style);
 
 /// An 8-bit sRGB PNG of linear RGB triples, rows from the top; values are clamped to 0..1 before encoding,
 /// NaN becomes 0. Beside its name, then renamed. Throws OutputError.

@@ -18,6 +18,7 @@
 #include "base/util/version.h"
 #include "image/image_io.h"
 #include "image/tone.h"
+#include "pictures/letters.h"
 
 namespace trilens {
 namespace {
@@ -215,6 +216,7 @@ void set_threads(int threads) {
 
 const trilens::PictureLibrary* trilens_picture_library() {
     static const trilens::PictureLibrary library{trilens::kVersion, trilens::read, trilens::decode,
-                                                 trilens::heights_of, trilens::set_threads};
+                                                 trilens::heights_of, trilens::letters_of,
+                                                 trilens::set_threads};
     return &library;
 }

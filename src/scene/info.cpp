@@ -150,6 +150,16 @@ SceneInfo make_scene_info(const Scene& scene) {
         info.volumes.push_back(make_volume_info(volume));
         info.bounds.include(info.volumes.back().bounds);
     }
+    for (const PointCloud& cloud : scene.points) {
+        CloudInfo& of =
+            info.points.emplace_back(CloudInfo{cloud.name, cloud.places.size(), !cloud.colors.empty(), {}});
+        for (const Vec3& place : cloud.places) of.bounds.include(place);
+        info.bounds.include(of.bounds);
+    }
+    for (const Label& label : scene.labels) {
+        info.labels.push_back(label.style.text);
+        info.bounds.include(label.place);
+    }
     info.lights = scene.lights.size();
     return info;
 }

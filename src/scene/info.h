@@ -52,12 +52,21 @@ struct VolumeInfo {
     Box bounds;
 };
 
+struct CloudInfo {
+    std::string name;
+    std::size_t points = 0;
+    bool has_colors = false;  // a colour for each
+    Box bounds;
+};
+
 struct SceneInfo {
     std::vector<std::string> cameras;       // names
     std::vector<std::string> camera_types;  // "perspective", "fisheye", ...
     std::vector<MeshInfo> meshes;
     std::vector<MaterialInfo> materials;
     std::vector<VolumeInfo> volumes;
+    std::vector<CloudInfo> points;
+    std::vector<std::string> labels;  // texts
     std::size_t lights = 0;
     std::size_t objects = 0, optics = 0, triangles = 0;
     Box bounds;

@@ -60,7 +60,8 @@ void read_meshes(const Node& root, Reading& reading) {
             used.insert(mesh.material);
         }
     }
-    if (reading.scene.meshes.empty() && !root.has("volumes")) reading.warn("", "the scene has no meshes");
+    if (reading.scene.meshes.empty() && !root.has("volumes") && !root.has("points"))
+        reading.warn("", "the scene has no meshes");
     for (Id i = 0; i < reading.named_materials; ++i)
         if (used.count(i) == 0)
             reading.warn("/materials/" + std::to_string(i),
@@ -146,6 +147,7 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     read_materials(root, reading);
     read_meshes(root, reading);
     read_volumes(root, reading);
+    read_marks(root, reading);
     read_lights(root, reading);
     add_light_objects(reading.scene);
     reading.scene.render = read_render(root);

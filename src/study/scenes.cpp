@@ -17,7 +17,7 @@ TextureReader texture_reader() {
             [](std::span<const unsigned char> encoded, const std::string& name) {
                 return decode_texture(encoded, name);
             },
-            read_heights};
+            read_heights, draw_letters};
 }
 
 bool is_image(const std::string& file) {

@@ -271,6 +271,7 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& cho
         lines.fold_curves.insert(lines.fold_curves.end(), layer->folds.begin(), layer->folds.end());
     }
     lines.facet_edges = drawing->facet_edges;
+    lines.marks = drawing->marks.marks.size();
     if (choice.caustics) lines.obj = drawing_obj(*drawing, *world_);
     return lines;
 }

@@ -54,6 +54,7 @@ struct EncodedPicture {
 struct LineDrawing {
     std::string svg;                   // one document; see the command's help for its attributes
     std::size_t curves = 0, arcs = 0;  // of it
+    std::size_t marks = 0;             // images of points and labels
     std::size_t folds = 0;             // curves where what an optic or the camera shows turns over
     // Where caustics were chosen: they and the fold curves in the world, as a Wavefront OBJ, and by layer.
     std::string obj;

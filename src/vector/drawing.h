@@ -12,6 +12,7 @@
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
 #include "render/frame/frame.h"
+#include "render/marks/marks.h"
 #include "vector/caustic.h"
 #include "vector/lines.h"
 
@@ -118,6 +119,7 @@ struct Drawing {
     TriangleScene visible;  // objects, then the optics' facets: what "direct" shows
     std::vector<std::unique_ptr<DrawingLayer>> layers;
     std::vector<FacetEdge> facet_edges;
+    PlacedMarks marks;  // the scene's points and labels
 };
 
 /// Draws what the exact engine shows over each pixel's principal paths; one layer for each history. `warn` is
@@ -132,6 +134,13 @@ inline constexpr double kSvgTolerance = 0.01;
 /// conics. The exact arcs stand in its attribute data-conic: "x0 y0 x1 y1 x2 y2 w" for each, a rational
 /// quadratic Bezier curve with Bezier weights 1, w, 1.
 std::string drawing_svg(const Drawing& drawing, const World& world);
+
+/// The marks as a group of ellipses and texts, from far to near; empty where there are none. A splat's colour
+/// is its light's, as sRGB, not mixed with what else comes its way.
+std::string marks_svg(const PlacedMarks& marks, const World& world);
+
+/// A text between tags or quotes.
+std::string svg_text(const std::string& text);
 
 /// The caustics as triangles, and the fold curves where they lie on objects as lines, in a Wavefront OBJ,
 /// world frame: an object for each sheet and each curve, "OPTIC-PATH-first", "-second", with "-virtual"

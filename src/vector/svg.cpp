@@ -94,23 +94,6 @@ std::string exact_text(const EdgeCurve& curve) {
     return text;
 }
 
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    return out;
-}
-
 /// A dark colour of its own for each object: hues by the golden angle.
 std::string colour_of(Id object) {
     const double hue = std::fmod(210 + 137.508 * object, 360) / 60;
@@ -153,7 +136,7 @@ std::string group(const DrawingLayer& layer, Id object, const std::vector<const 
                   const World& world) {
     std::string svg = "<g class=\"" + layer.path + "\" data-object=\"" + std::to_string(object) + "\"";
     if (layer.optic != kNone) svg += " data-optic=\"" + std::to_string(layer.optic) + "\"";
-    svg += " stroke=\"" + colour_of(object) + "\">\n<title>" + escaped(world.names[object]) + "</title>\n";
+    svg += " stroke=\"" + colour_of(object) + "\">\n<title>" + svg_text(world.names[object]) + "</title>\n";
     for (const EdgeCurve* curve : curves) {
         std::string path = "M" + place(standard(curve->arcs[0]).p0);
         for (const ScreenArc& arc : curve->arcs) append_path(arc, 0, path);
@@ -169,7 +152,7 @@ std::string fold_group(const DrawingLayer& layer, const World& world) {
     std::string svg = "<g class=\"fold\" data-path=\"" + layer.path + "\"";
     if (layer.optic != kNone) svg += " data-optic=\"" + std::to_string(layer.optic) + "\"";
     svg += " stroke=\"" + std::string(kFoldColour) + "\" stroke-dasharray=\"3 2\">\n<title>" +
-           escaped(layer.optic == kNone ? "camera" : world.names[layer.optic]) + "</title>\n";
+           svg_text(layer.optic == kNone ? "camera" : world.names[layer.optic]) + "</title>\n";
     for (const FoldCurve& fold : layer.folds) {
         std::string path = "M" + place(fold.points[0]);
         for (std::size_t i = 1; i < fold.points.size(); ++i) path += "L" + place(fold.points[i]);
@@ -180,12 +163,29 @@ std::string fold_group(const DrawingLayer& layer, const World& world) {
 
 }  // namespace
 
+std::string svg_text(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    return out;
+}
+
 std::string drawing_svg(const Drawing& drawing, const World& world) {
     const std::string width = std::to_string(drawing.width), height = std::to_string(drawing.height);
     std::string svg =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
         width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " + height + "\">\n<desc>" +
-        escaped(description(drawing)) + "</desc>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n" +
+        svg_text(description(drawing)) + "</desc>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n" +
         "<g fill=\"none\" stroke-width=\"" + number(kStrokeWidth, "%g") +
         "\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
     for (const auto& layer : drawing.layers) {
@@ -195,7 +195,7 @@ std::string drawing_svg(const Drawing& drawing, const World& world) {
         for (const auto& [object, curves] : by_object) svg += group(*layer, object, curves, world);
     }
     for (const auto& layer : drawing.layers) svg += fold_group(*layer, world);
-    return svg + "</g>\n</svg>\n";
+    return svg + "</g>\n" + marks_svg(drawing.marks, world) + "</svg>\n";
 }
 
 }  // namespace trilens

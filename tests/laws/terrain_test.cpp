@@ -38,7 +38,7 @@ std::string terrain_world(const std::string& file, const std::string& more, cons
            R"(", "size": [8, 1.2, 6])" + more + "}]}";
 }
 
-constexpr const char* kBall =
+constexpr const char* kBallOverTerrain =
     R"({"name": "ball", "role": "optic", "material": "chrome", "primitive": {"type": "sphere", "center": [0, 1.3, 0], "radius": 0.6}},)";
 
 SampleViews views_of(const World& world, Engine engine) {
@@ -86,7 +86,7 @@ TEST_CASE("terrains are projected as Embree traces them, directly and in a ball"
     const std::string file = heights_file(mountains(97, 65));
     for (const char* more :
          {"", R"(, "heightError": 0.02)", R"(, "heightError": 0.05, "thinning": "haar")"}) {
-        const auto world = world_from("terrain", terrain_world(file, more, kBall), 12);
+        const auto world = world_from("terrain", terrain_world(file, more, kBallOverTerrain), 12);
         const Agreement agreement = compare_engines(*world);
         INFO(more << " " << agreement.first_off_edge);
         CHECK(agreement.optic_pixels > 300);

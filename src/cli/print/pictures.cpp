@@ -49,6 +49,9 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
             {"certified_pixels", picture.statistics.certified_pixels},
             {"certified_error", picture.statistics.certified_error},
             {"outline_pixels", picture.statistics.outline_pixels},
+            {"marks", picture.statistics.marks},
+            {"hidden_marks", picture.statistics.hidden_marks},
+            {"unseen_marks", picture.statistics.unseen_marks},
             {"fragment_pixels", picture.statistics.fragment_pixels},
             {"fragments", picture.statistics.fragments},
             {"fragments_per_pixel", picture.statistics.fragments_per_pixel()},
@@ -67,6 +70,7 @@ Json drawing_fields(const Film& film, const LineChoice& choice, const LineDrawin
     if (!choice.caustics)
         fields.update(Json{{"wire", choice.wire}, {"curves", drawing.curves}, {"arcs", drawing.arcs}});
     fields["folds"] = drawing.folds;
+    if (!choice.caustics) fields["marks"] = drawing.marks;
     if (!choice.caustics) return fields;
     std::size_t triangles = 0, segments = 0;
     for (const LineDrawing::Caustic& one : drawing.caustics)

@@ -145,6 +145,17 @@ Answer info_answer(const Scene& scene) {
         fields["volumes"].push_back(volume_json(volume));
         answer.text += volume_line(volume);
     }
+    fields["points"] = Json::array();
+    for (const CloudInfo& cloud : found.points) {
+        fields["points"].push_back({{"name", cloud.name},
+                                    {"points", cloud.points},
+                                    {"colors", cloud.has_colors},
+                                    {"bounds", box_json(cloud.bounds)}});
+        answer.text += fmt::format("  points  {}: {}{}\n", cloud.name, cloud.points,
+                                   cloud.has_colors ? ", with colours" : "");
+    }
+    fields["labels"] = found.labels;
+    if (!found.labels.empty()) answer.text += fmt::format("  labels  {}\n", found.labels.size());
     return answer;
 }
 

@@ -14,6 +14,8 @@
 
 namespace trilens {
 
+class MarkPainter;
+
 /// FrameParams::max_error where no facet is divided for what it is predicted to be off by.
 inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
 
@@ -112,6 +114,9 @@ struct LayerRequest {
     // samples beside it: edges stay jagged, and filters with negative lobes leave dark rings.
     std::function<Vec3(const Vec3& light)> shown = {};
     Shading shading = Shading::kFragment;
+    // What is painted over the pixels; null: nothing. Of a picture the scene's points and labels, whatever
+    // stands here.
+    const MarkPainter* marks = nullptr;
 };
 
 struct PictureRequest {
@@ -160,6 +165,9 @@ struct LayerStatistics {
     // their fragments; of the rays that these shade, those that had to be shaded at each sample, and the
     // pixels that have such rays.
     std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0, pixels_shaded_by_sample = 0;
+    // Images of points and labels that are painted, those on the film that something hides, and the points
+    // and labels that have no image.
+    std::size_t marks = 0, hidden_marks = 0, unseen_marks = 0;
     std::vector<OpticProbes> probes;  // per optic, where facets are used that are worthwhile
 
     /// 0 where no pixel is shaded by fragments.

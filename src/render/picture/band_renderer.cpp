@@ -8,6 +8,7 @@
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "render/frame/camera_rays.h"
+#include "render/marks/marks.h"
 #include "render/picture/channels.h"
 #include "render/picture/fragments.h"
 #include "render/picture/rough_light.h"
@@ -154,10 +155,11 @@ struct BandSource {
     const PixelFilter& filter;
     bool by_fragments = false;  // see makes_fragments()
     bool bounds_coverage = false;
+    const MarkPainter* marks = nullptr;
 };
 
 void view_band(const BandSource& source, Band& band) {
-    const auto& [world, viewer, filter, by_fragments, bounds_coverage] = source;
+    const auto& [world, viewer, filter, by_fragments, bounds_coverage, marks] = source;
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
     band.fragments.reset();
@@ -179,7 +181,7 @@ void view_band(const BandSource& source, Band& band) {
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
 void find_colours(const BandSource& source, const Band& band, std::size_t first,
                   std::span<SampleColour> colours) {
-    const auto& [world, viewer, filter, by_fragments, bounds_coverage] = source;
+    const auto& [world, viewer, filter, by_fragments, bounds_coverage, marks] = source;
     const SampleGrid& grid = band.grid;
     if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
@@ -203,6 +205,17 @@ void find_colours(const BandSource& source, const Band& band, std::size_t first,
                    has_caustics(world) || has_rough_optics(world) ? &differentials : nullptr);
     for (std::size_t i = 0; i < colours.size(); ++i)
         colours[i] = mean_colour(filter, std::span(samples).subspan(i * per_pixel, per_pixel));
+}
+
+void paint_marks(const BandSource& source, const Band& band, std::size_t first,
+                 std::span<SampleColour> colours) {
+    const std::size_t width = static_cast<std::size_t>(band.grid.width());
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        const SampleView& view = band.middle().samples[first + i];
+        source.marks->paint(band.grid.x0 + static_cast<int>((first + i) % width),
+                            band.grid.y0 + static_cast<int>((first + i) / width),
+                            view.optic == kNone ? kNone : source.world.optics[view.optic].mesh, colours[i]);
+    }
 }
 
 void count(const World& world, const SampleViews& middle, const SampleView& view, LayerStatistics& counts) {
@@ -275,6 +288,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
             const std::size_t end = std::min(to, start + kPixelsPerTask);
             const std::span<SampleColour> here = std::span(colours).first(end - start);
             find_colours(source, band, start, here);
+            if (source.marks) paint_marks(source, band, start, here);
             canvas.put_colours(here, first + start);
             for (std::size_t p = start; p < end; ++p) {
                 canvas.put_centre(world, middle, middle.samples[p], first + p);
@@ -314,7 +328,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
-    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage()};
+    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage(), request.marks};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {

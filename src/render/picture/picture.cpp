@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -12,6 +13,7 @@
 #include "base/util/version.h"
 #include "paths/trace/follow.h"
 #include "render/engines/engine.h"
+#include "render/marks/marks.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -211,7 +213,7 @@ void check_certify(const PictureRequest& request) {
 
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
                      const Warn& warn, const StripSink* sink) {
-    const LayerRequest layers = checked_layers(world, request.layers);
+    LayerRequest layers = checked_layers(world, request.layers);
     check_certify(request);
     check_film_fits(world, layers, sink != nullptr);
     warn_of_roughness(world, request.frame, request.engine, warn);
@@ -219,6 +221,13 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     Picture picture;
     const Stopwatch preparing;
     const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, warn);
+    std::optional<PlacedMarks> marks;
+    std::optional<MarkPainter> painter;
+    if (!world.scene.points.empty() || !world.scene.labels.empty()) {
+        marks = place_marks(world, request.frame, {nullptr, progress.cancel});
+        painter.emplace(world, *marks, layers.shown);
+    }
+    layers.marks = painter ? &*painter : nullptr;
     picture.prepare_seconds = preparing.seconds();
 
     // Strips pass by the one who watches to the one who takes the picture; without one they are collected.
@@ -247,11 +256,17 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();
     picture.statistics.probes = probes_of(world, *viewer);
+    if (marks) {
+        picture.statistics.marks = marks->marks.size();
+        picture.statistics.hidden_marks = marks->hidden;
+        picture.statistics.unseen_marks = marks->unseen;
+    }
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);
         tell_omissions(world, request.engine.engine, picture.statistics, warn);
         tell_crowded_out(picture.statistics, warn);
+        if (marks) tell_marks(world, *marks, warn);
     }
     return picture;
 }

@@ -33,6 +33,7 @@ class SceneCheck {
     void lights() const;
     void meshes() const;
     void volumes() const;
+    void marks() const;
 
   private:
     [[noreturn]] void fail(const std::string& place, const std::string& message) const {
@@ -214,6 +215,28 @@ void SceneCheck::volumes() const {
     }
 }
 
+void SceneCheck::marks() const {
+    for (std::size_t i = 0; i < scene_.points.size(); ++i) {
+        const PointCloud& cloud = scene_.points[i];
+        const std::string place = "/points/" + std::to_string(i);
+        require(!cloud.places.empty(), place, "has no points");
+        require(cloud.places.size() <= kMostPoints, place, "has too many points");
+        finite(cloud.places, place + "/at");
+        require(cloud.colors.empty() || cloud.colors.size() == cloud.places.size(), place + "/colors",
+                "needs one entry per point");
+        finite(cloud.colors, place + "/colors");
+        require(is_finite(cloud.radius) && cloud.radius >= 0 && is_finite(cloud.size) && cloud.size > 0,
+                place, "needs a size");
+    }
+    for (std::size_t i = 0; i < scene_.labels.size(); ++i) {
+        const Label& label = scene_.labels[i];
+        const std::string place = "/labels/" + std::to_string(i);
+        require(!label.style.text.empty(), place + "/text", "is empty");
+        require(is_finite(label.place) && is_finite(label.color), place, "is not finite");
+        require(is_finite(label.style.size) && label.style.size > 0, place + "/size", "must be above 0");
+    }
+}
+
 }  // namespace
 
 void check_scene(const Scene& scene) {
@@ -224,6 +247,7 @@ void check_scene(const Scene& scene) {
     check.lights();
     check.meshes();
     check.volumes();
+    check.marks();
 }
 
 }  // namespace trilens

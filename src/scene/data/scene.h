@@ -10,6 +10,7 @@
 
 #include "base/description/camera_description.h"
 #include "base/description/light.h"
+#include "base/description/marks.h"
 #include "base/description/material.h"
 #include "base/description/optic_description.h"
 #include "base/image/height_grid.h"
@@ -163,6 +164,8 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Light> lights;
     std::vector<Volume> volumes;
+    std::vector<PointCloud> points;
+    std::vector<Label> labels;
     RenderSettings render;
     std::vector<FileRead> files;  // every file that the scene was made of, each once, in order of reading
     std::vector<std::string> warnings;

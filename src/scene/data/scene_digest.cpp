@@ -233,6 +233,16 @@ void add(const Volume& volume, Digest& digest) {
     if (cells) digest.add_all(cells->points, cells->scalars, cells->cells);
 }
 
+void add(const PointCloud& cloud, Digest& digest) {
+    const auto& [name, places, colors, color, radius, size, min_weight] = cloud;
+    digest.add_all(name, places, colors, color, radius, size, min_weight);
+}
+
+void add(const Label& label, Digest& digest) {
+    [[maybe_unused]] const auto& [style, place, color, offset, dot, min_weight, letters] = label;
+    digest.add_all(style.text, style.size, style.font, place, color, offset, dot, min_weight);
+}
+
 template <typename T>
 void add(const std::vector<T>& list, Digest& digest) {
     digest.add(list.size());
@@ -249,7 +259,8 @@ std::string mesh_digest(const Mesh& mesh) {
 
 std::string scene_digest(const Scene& scene) {
     [[maybe_unused]] const auto& [file, folder, label, resolved, film, cameras, own_camera, background,
-                                  materials, meshes, lights, volumes, render, files, warnings] = scene;
+                                  materials, meshes, lights, volumes, points, labels, render, files,
+                                  warnings] = scene;
     Digest digest;
     const auto& [width, height, spp, filter] = film;
     digest.add_all(width, height, spp, filter, own_camera);
@@ -262,10 +273,13 @@ std::string scene_digest(const Scene& scene) {
     const auto& [max_depth, direct, reflect, refract, fresnel, max_error, rough_samples, rough_truth_samples,
                  certify] = render;
     digest.add_all(max_depth, direct, reflect, refract, fresnel, max_error);
+    // What older scenes could not have is added where it is there, so that their keys stay.
     if (rough_samples != RenderSettings().rough_samples ||
         rough_truth_samples != RenderSettings().rough_truth_samples)
         digest.add_all(rough_samples, rough_truth_samples);
-    if (certify) digest.add(certify);  // keys of older sweeps stay
+    if (certify) digest.add(certify);
+    if (!points.empty()) add(points, digest);
+    if (!labels.empty()) add(labels, digest);
     return digest.digits();
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/description/marks.h"
 #include "base/description/material.h"
 #include "base/image/height_grid.h"
 
@@ -43,6 +44,7 @@ struct TextureReader {
                                                  const std::string& name)>
         from_memory;
     std::function<HeightGrid(const std::string& file)> heights_from_file = {};
+    std::function<TextMask(const TextStyle& style)> letters = {};  // none: labels have no letters
 };
 
 }  // namespace trilens

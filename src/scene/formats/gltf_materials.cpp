@@ -12,7 +12,6 @@
 namespace trilens {
 namespace {
 
-
 class MaterialReader {
   public:
     MaterialReader(GltfSource& source, GltfModel& into, std::size_t index)

@@ -4,12 +4,15 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "scene/data/scene.h"
+#include "scene/formats/line_scanner.h"
+#include "scene/formats/point_cloud.h"
 
 namespace trilens {
 namespace {
@@ -106,6 +109,24 @@ std::vector<Vec3> points_of(const std::vector<double>& numbers) {
     return points;
 }
 
+bool is_ply_name(const std::string& file) {
+    const std::string ending = in_capitals(std::filesystem::path(file).extension().string());
+    return ending == ".PLY";
+}
+
+/// How many numbers the first line has that begins like one.
+std::size_t numbers_in_first_point(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        line.remove_prefix(std::min(line.find_first_not_of(" \t\xef\xbb\xbf"), line.size()));
+        if (!line.empty() && std::string_view("+-.0123456789").find(line[0]) != std::string_view::npos)
+            return 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return 0;
+}
+
 }  // namespace
 
 std::vector<double> parse_numbers(const std::string& text, const std::string& name, const LineForm& form) {
@@ -146,7 +167,25 @@ std::vector<Vec3> parse_points(const std::string& text, const std::string& name)
 }
 
 std::vector<Vec3> read_points(const std::string& file) {
+    if (is_ply_name(file)) return parse_ply(read_required_file(file), file).points;
     return points_of(read_numbers(file, {}));
+}
+
+ColoredPoints parse_cloud(const std::string& bytes, const std::string& file) {
+    if (is_ply_name(file)) return parse_ply(bytes, file);
+    const std::size_t per_line = numbers_in_first_point(bytes);
+    const std::vector<double> numbers =
+        per_line == 6 ? parse_numbers(bytes, file, {6, "x,y,z,red,green,blue", "points"})
+                      : parse_numbers(bytes, file, {});
+    ColoredPoints cloud;
+    if (per_line != 6) return {points_of(numbers), {}};
+    for (std::size_t i = 0; i < numbers.size(); i += 6) {
+        cloud.points.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+        cloud.colors.emplace_back(numbers[i + 3], numbers[i + 4], numbers[i + 5]);
+        if (!(numbers[i + 3] >= 0 && numbers[i + 4] >= 0 && numbers[i + 5] >= 0))
+            throw InputError(file, "", "point " + std::to_string(i / 6) + " has a negative colour");
+    }
+    return cloud;
 }
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-// Points written as text: x,y,z, one per line of a file.
+// Points in files: x,y,z, one per line of a text, or PLY.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,9 @@ std::optional<Vec3> parse_point(const std::string& text);
 /// The points of a text as read_points reads it; messages call it `name`.
 std::vector<Vec3> parse_points(const std::string& text, const std::string& name);
 
-/// The points of a text file, one x,y,z per line; empty lines, lines that begin with # and a first line of
-/// words (a header) are passed over. Throws InputError with the file and the line of the first that is no
-/// point, or where there is none.
+/// The points of a file: of a PLY its vertices, of a text one x,y,z per line; empty lines, lines that begin
+/// with # and a first line of words (a header) are passed over. Throws InputError with the file and the line
+/// of the first that is no point, or where there is none.
 std::vector<Vec3> read_points(const std::string& file);
 
 /// What a line of a table holds, as messages name it: "x,y,z".

@@ -18,6 +18,7 @@ FileRead make_file_read(const std::string& path, std::string_view bytes) {
 Reading::Reading(const std::string& named, const std::string& paths_start_here, const TextureReader& pictures)
     : file(named), folder(paths_start_here) {
     textures.from_memory = pictures.from_memory;
+    textures.letters = pictures.letters;
     if (pictures.heights_from_file)
         textures.heights_from_file = [this, heights_from_file =
                                                 pictures.heights_from_file](const std::string& path) {

@@ -92,6 +92,8 @@ Film read_film(const Node& scene);
 Background read_background(const Node& scene, Reading& reading);
 /// Adds the volumes, in order.
 void read_volumes(const Node& scene, Reading& reading);
+/// Adds the points and the labels, in order.
+void read_marks(const Node& scene, Reading& reading);
 /// Adds the lights, in order.
 void read_lights(const Node& scene, Reading& reading);
 RenderSettings read_render(const Node& scene);
@@ -150,6 +152,8 @@ const std::vector<Field<Light>>& light_fields();
 const std::vector<Field<RenderSettings>>& render_fields();
 const std::vector<Field<Volume>>& volume_entry_fields();
 const std::vector<Field<TransferPoint>>& transfer_point_fields();
+const std::vector<Field<PointCloud>>& point_cloud_fields();
+const std::vector<Field<Label>>& label_fields();
 const std::vector<Field<Mesh>>& mesh_fields();
 const std::vector<Field<Cage>>& subdivision_fields();         // keys of a mesh, too
 const std::vector<Field<TerrainSettings>>& terrain_fields();  // keys of a mesh, too
@@ -174,6 +178,8 @@ Json volume_schema();
 Json volume_grid_schema();  // of a volume
 Json transfer_schema();     // of a volume
 Json transfer_point_schema();
+Json point_cloud_schema();
+Json label_schema();
 Json mesh_schema();
 Json region_schema();  // of a terrain
 Json patch_schema();   // of a mesh

@@ -32,6 +32,8 @@ constexpr const char* kFrame = R"json({
   "lenses": { "type": "array", "items": { "$ref": "#/definitions/lens" } },
   "volumes": { "type": "array", "items": { "$ref": "#/definitions/volume" } },
   "lights": { "type": "array", "items": { "$ref": "#/definitions/light" } },
+  "points": { "type": "array", "items": { "$ref": "#/definitions/pointCloud" } },
+  "labels": { "type": "array", "items": { "$ref": "#/definitions/label" } },
   "render": { "$ref": "#/definitions/render" },
   "animation": { "$ref": "#/definitions/animation" }
 },
@@ -184,6 +186,8 @@ Json make_schema() {
     definitions["volumeGrid"] = volume_grid_schema();
     definitions["transferFunction"] = transfer_schema();
     definitions["transferPoint"] = transfer_point_schema();
+    definitions["pointCloud"] = point_cloud_schema();
+    definitions["label"] = label_schema();
     definitions["render"] = render_schema();
     check_keywords(schema);
     return schema;
