@@ -112,6 +112,7 @@ EngineChoice engine_choice(const std::string& name);
 
 void bind_project(RendererClass& renderer);
 void bind_shoot(RendererClass& renderer);
+void bind_bake(RendererClass& renderer);
 void bind_explain(RendererClass& renderer);
 void bind_facts(RendererClass& renderer);
 void bind_unwrap(RendererClass& renderer, py::module_& module);  // unwrap, map, warp_mesh, anamorph

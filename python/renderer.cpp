@@ -394,6 +394,7 @@ void bind_renderer(py::module_& module) {
     bind_line_drawing(module, renderer);
     bind_project(renderer);
     bind_shoot(renderer);
+    bind_bake(renderer);
     bind_unwrap(renderer, module);
     bind_explain(renderer);
     bind_facts(renderer);

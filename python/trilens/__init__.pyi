@@ -396,6 +396,22 @@ class Renderer:
         file: Optional[_File] = None,
         progress: _Progress = None,
     ) -> dict[str, Any]: ...
+    def bake(
+        self,
+        *,
+        solver: str = "progressive",
+        form_factors: str = "hemicube",
+        hemicube: int = 64,
+        rays: int = 4096,
+        tolerance: float = 0.001,
+        patch_size: float = 0.0625,
+        smallest_size: float = 0.0078125,
+        contrast: float = 0.2,
+        max_elements: int = 50000,
+        keep_lights: bool = False,
+        file: Optional[_File] = None,
+        progress: _Progress = None,
+    ) -> tuple[Scene, dict[str, Any]]: ...
     def warp_mesh(
         self,
         to: str,

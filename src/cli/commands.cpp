@@ -19,11 +19,11 @@ Command make_commands() {
     Command root{.name = "trilens",
                  .summary = "draw what curved mirrors and glass show, by projection, and measure its error"};
     root.commands = render_commands();
-    for (Command& command :
-         std::vector<Command>{compare_command(), sweep_command(), report_command(), test_command(),
-                              project_command(), shoot_command(), fit_command(), design_command(),
-                              unwrap_command(), map_command(), caustic_command(), anamorph_command(),
-                              view_command(), scene_command(), lens_command(), info_command()})
+    for (Command& command : std::vector<Command>{
+             compare_command(), sweep_command(), report_command(), test_command(), project_command(),
+             shoot_command(), fit_command(), design_command(), unwrap_command(), map_command(),
+             caustic_command(), bake_command(), anamorph_command(), view_command(), scene_command(),
+             lens_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;
@@ -109,6 +109,10 @@ std::vector<Example> examples_of(const std::string& called) {
         {"trilens caustic",
          {{"trilens caustic scene.json --light 0 --onto floor:1024x1024 -o caustic.exr",
            "what a light brings over mirrors and through glass to the floor, per pixel of its texture"}}},
+        {"trilens bake",
+         {{"trilens bake cornell.json -o baked.json", "a scene whose objects keep the light of the room"},
+          {"trilens bake cornell.json --keep-lights --plot convergence.svg -o baked.json",
+           "only what comes after the lights themselves, which go on shining; and how it came to rest"}}},
         {"trilens anamorph",
          {{"trilens anamorph cylinder.json --picture p.png --page page --paper A4 --verify -o page.pdf",
            "a page to print at true scale, and how near the picture is seen"}}},

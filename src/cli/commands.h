@@ -19,6 +19,7 @@ Command shoot_command();
 Command unwrap_command();
 Command map_command();
 Command caustic_command();
+Command bake_command();
 Command anamorph_command();
 Command fit_command();
 Command design_command();

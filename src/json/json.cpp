@@ -204,6 +204,35 @@ std::string json_document(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+void write_rows(const Json& json, const std::string& indent, std::string& text) {
+    const auto is_plain = [](const Json& one) { return one.is_primitive() && !one.is_string(); };
+    const bool is_row = json.is_array() && std::all_of(json.begin(), json.end(), is_plain);
+    if (!json.is_structured() || json.empty() || is_row) {
+        text += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+        return;
+    }
+    const std::string inner = indent + "  ";
+    const char* before = "";
+    text += json.is_array() ? "[" : "{";
+    for (const auto& [key, value] : json.items()) {
+        text += before + std::string("\n") + inner;
+        if (json.is_object()) text += Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+        write_rows(value, inner, text);
+        before = ",";
+    }
+    text += "\n" + indent + (json.is_array() ? "]" : "}");
+}
+
+}  // namespace
+
+std::string json_rows(const Json& json) {
+    std::string text;
+    write_rows(json, "", text);
+    return text + "\n";
+}
+
 std::string json_line(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -63,6 +63,8 @@ std::optional<double> number_of_json(const Json& json);
 
 /// Indented text with a line end; bytes that are no UTF-8 become U+FFFD.
 std::string json_document(const Json& json);
+/// The same, with arrays of numbers each on one line.
+std::string json_rows(const Json& json);
 /// The same on one line.
 std::string json_line(const Json& json);
 

@@ -104,7 +104,9 @@ void warn_of_appearance(Reading& reading) {
         reading.warn("/materials/" + std::to_string(*blended),
                      "blends with what is behind: such surfaces cast no shadow, and are not drawn inside of "
                      "glass");
-    if (needs_light && scene.lights.empty())
+    const bool is_baked = std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                                      [](const Mesh& mesh) { return !mesh.object.baked.empty(); });
+    if (needs_light && scene.lights.empty() && !is_baked)
         reading.warn("/lights", "there is no light: every object whose material is not unlit is black");
 }
 
@@ -204,7 +206,7 @@ std::string scene_document(const Scene& scene, const std::string& folder) {
     Json json = resolved_json(scene);
     const std::filesystem::path to = std::filesystem::path(folder).lexically_normal();
     if (to != std::filesystem::path(scene.folder)) move_files(json, scene.folder, to);
-    return json_document(json);
+    return json_rows(json);
 }
 
 void set_resolution(Scene& scene, int resolution, const std::string& optic) {

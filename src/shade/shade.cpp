@@ -73,6 +73,7 @@ bool is_shadowed(const ShadeScene& scene, const Light& light, const Frame& frame
 /// Adds the irradiance over pi of one light, or the ambient radiance.
 void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, Vec3& arriving) {
     const Light& light = scene.lights[index];
+    if (light.baked) return;
     const bool shadows = is_hindered(light) && scene.occluded;
     if (std::holds_alternative<AmbientLight>(light.kind) && !shadows) {
         arriving += light.intensity * light.color;
@@ -101,12 +102,12 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     }
     const Frame frame = frame_at(scene, hit, ray.direction);
 
-    Vec3 arriving(0);
+    Vec3 arriving = baked_light_at(scene, hit, ray.direction);
     for (std::size_t l = 0; l < scene.lights.size(); ++l) add_light(scene, l, frame, arriving);
     Vec3 caustic(0);
     if (scene.caustic)
         for (std::size_t l = 0; l < scene.lights.size(); ++l)
-            if (scene.lights[l].caustics)
+            if (has_followed_light(scene.lights[l]))
                 caustic +=
                     kInversePi *
                     scene.caustic(

@@ -44,8 +44,8 @@ struct ShadeSurroundings {
     std::function<Vec3(std::size_t light, const Receiver&)> caustic;
 };
 
-/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs,
-/// colors and normals may end early: triangles beyond have zeros, and colours of one.
+/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs, colors,
+/// normals and baked light may end early: triangles beyond have zeros, and colours of one.
 struct ShadeScene : ShadeSurroundings {
     const TriangleScene* triangles = nullptr;
     std::vector<Id> material;              // index into materials
@@ -53,6 +53,7 @@ struct ShadeScene : ShadeSurroundings {
     std::vector<std::array<Vec2, 3>> second_uvs;  // of textures whose sampler says so
     std::vector<std::array<Vec4, 3>> colors;   // factors of base colour and alpha; unset triangles hold ones
     std::vector<std::array<Vec3, 3>> normals;  // unit per corner; all zero: the triangle is flat
+    std::vector<BakedLight> baked;             // arrives beside what the lights send
 };
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided;
@@ -134,6 +135,10 @@ SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const MapTexels& te
 struct SurfaceNormals {
     Vec3 shading{0}, geometric{0};  // the mesh's, between its corners; the triangle's plane's
 };
+
+/// The light that was baked into the surface there, irradiance over pi, on the side that faces against
+/// `toward`.
+Vec3 baked_light_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward);
 
 /// The normal there that light comes to, where the material's normal map shows `in_map`. Tangents are the
 /// triangle's own derivatives by u and v, at right angles to the normal.

@@ -107,6 +107,7 @@ struct Shaded {
     void add(const SeenAlong& seen, std::size_t index);
     void pad();
     void arrive();
+    void add_baked(std::size_t lane);
     void add_caustic(std::size_t light, ShadeBatch::Bits wanted);
     void arrive_from(std::size_t light, ShadeBatch::Bits wanted);
     void find_viewed(ShadeBatch::Bits wanted);
@@ -159,7 +160,16 @@ void Shaded::arrive() {
     pad();
     find_surfaces(batch, kShadowOffset * scene.size);
     find_viewed(wanted);
-    for (std::size_t l = 0; l < scene.lights.size(); ++l) arrive_from(l, wanted);
+    if (!scene.baked.empty()) for_each_of(wanted, [&](std::size_t i) { add_baked(i); });
+    for (std::size_t l = 0; l < scene.lights.size(); ++l)
+        if (!scene.lights[l].baked) arrive_from(l, wanted);
+}
+
+/// What was computed beforehand.
+void Shaded::add_baked(std::size_t i) {
+    const Vec3 light = baked_light_at(scene, *seen[i]->hit, seen[i]->ray->direction);
+    batch.arriving.set(i, light);  // the first that arrives
+    if (viewed & Segments::bit(i)) viewed_lane[i].arrived.matt += light;
 }
 
 /// What one light sends to the lanes that are wanted.

@@ -177,6 +177,17 @@ SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const MapTexels& te
     return look;
 }
 
+Vec3 baked_light_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward) {
+    if (hit.triangle >= scene.baked.size()) return Vec3(0);
+    const IdTriple& corner = scene.triangles->triangles[hit.triangle];
+    const Vec3& a = scene.triangles->points[corner[0]];
+    const Vec3 normal = cross(scene.triangles->points[corner[1]] - a, scene.triangles->points[corner[2]] - a);
+    const BakedLight& light = scene.baked[hit.triangle];
+    const std::array<Vec3, 3>& side = dot(normal, toward) > 0 ? light.back : light.front;
+    return (1 - hit.barycentric.x - hit.barycentric.y) * side[0] + hit.barycentric.x * side[1] +
+           hit.barycentric.y * side[2];
+}
+
 Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const SurfaceNormals& surface,
                    const Vec3& in_map) {
     const Material& material = material_of(scene, hit);

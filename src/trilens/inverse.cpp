@@ -65,6 +65,12 @@ CausticMap make_caustic_map(const Renderer& renderer, const CausticMapRequest& r
     return map;
 }
 
+Bake bake_light(const Renderer& renderer, const BakeRequest& request, const Progress& progress) {
+    Bake bake;
+    renderer.use_world([&](const World& world) { bake = bake_light(world, request, progress); });
+    return bake;
+}
+
 std::string map_format(const std::string& file) {
     for (const char* format : {"exr", "npz", "pgm", "data", "obj"})
         if (file.size() > std::string(format).size() + 1 && file.ends_with(std::string(".") + format))

@@ -1,4 +1,5 @@
-// Panoramas, domes, planes and objects: photographs made into them, maps for other programs, light on them.
+// Panoramas, domes, planes and objects: photographs made into them, maps for other programs, light on them;
+// the light that matt objects send to one another.
 //
 //     #include <trilens/scene.h>
 //     const trilens::Renderer renderer(trilens::load_scene({"ball.json"}));
@@ -14,6 +15,10 @@
 //     trilens::CausticMapRequest light;
 //     light.target = trilens::parse_target("tiles:256x256", renderer.scene());
 //     trilens::write_image("caustic.exr", trilens::image_of(trilens::make_caustic_map(renderer, light)));
+//
+//     const trilens::Renderer room(trilens::load_scene({"cornell.json"}));
+//     const trilens::Renderer lit(trilens::bake_light(room, {}).scene);
+//     trilens::write_image("lit.exr", lit.draw({}).image);
 #pragma once
 
 #include <string>
@@ -22,6 +27,7 @@
 #include "inverse/maps/caustic_map.h"
 #include "inverse/maps/film_map.h"
 #include "inverse/unwrap/unwrap.h"
+#include "radiosity/bake.h"
 #include "trilens/image.h"
 #include "trilens/render.h"
 
@@ -60,5 +66,8 @@ void write_mesh(const std::string& file, const WarpMesh& mesh);
 /// See make_caustic_map in the room `inverse`: throws as that does.
 CausticMap make_caustic_map(const Renderer& renderer, const CausticMapRequest& request,
                             const Progress& progress = {});
+
+/// See bake_light in the room `radiosity`: throws as that does.
+Bake bake_light(const Renderer& renderer, const BakeRequest& request, const Progress& progress = {});
 
 }  // namespace trilens

@@ -26,7 +26,7 @@ Scene full_scene() {
     material.base_color_texture = texture(1);
     scene.materials = {material};
     Mesh mesh;
-    mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {{}}, {{}}, {0}};
+    mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {{}}, {{}}, {0}, {}};
     mesh.primitive = Primitive{};
     mesh.cage = {{{1, 2, 3}}, {3}, {0, 0, 0}, {}, {}, {0}, {2}, {1.5}, {0}, {2.5}, {0}, {}};
     scene.meshes = {mesh, mesh};

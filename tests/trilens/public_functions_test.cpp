@@ -96,6 +96,8 @@ const std::map<std::string, std::string> kElsewhere{
     {"make_anamorph", "tests/inverse: anamorph"},
     {"image_of", "of maps that make_caustic_map made"},
     {"make_caustic_map", "tests/laws: caustics"},
+    {"bake_light", "tests/laws: radiosity"},
+    {"convergence_plot", "tests/radiosity: plots"},
     {"make_film_map", "tests/inverse: maps"},
     {"make_map", "tests/inverse: maps"},
     {"make_mesh", "tests/inverse: maps"},

@@ -1,6 +1,7 @@
 // Lights, and the background that rays see where they hit nothing.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -103,12 +104,18 @@ struct Light {
     double intensity = 1;
     bool shadows = false;
     bool caustics = false;  // its light is followed over optics; all of them stop what comes straight
+    bool baked = false;     // its light is in the objects' baked light: it shows, but shines no more
     LightKind kind;
 };
 
 /// Whether things stand in the way of its light.
 inline bool is_hindered(const Light& light) {
-    return light.shadows || light.caustics;
+    return (light.shadows || light.caustics) && !light.baked;
+}
+
+/// Whether its light is followed over optics.
+inline bool has_followed_light(const Light& light) {
+    return light.caustics && !light.baked;
 }
 
 inline const char* kind_name(const Light& light) {
@@ -124,6 +131,12 @@ inline bool is_visible(const Light& light) {
         },
         light.kind);
 }
+
+/// Light that was computed beforehand, at the corners of a triangle: irradiance over pi, on the side where
+/// the corners turn anticlockwise, and on the other.
+struct BakedLight {
+    std::array<Vec3, 3> front{Vec3(0), Vec3(0), Vec3(0)}, back{Vec3(0), Vec3(0), Vec3(0)};
+};
 
 /// What rays see that hit nothing: a colour, or a latitude-longitude picture turned about +Y.
 struct Background {

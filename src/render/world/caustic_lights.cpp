@@ -133,8 +133,7 @@ std::vector<BeamSource> beam_sources(const Light& light, const Background& backg
 }
 
 bool has_caustics(const World& world) {
-    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(),
-                       [](const Light& light) { return light.caustics; });
+    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(), has_followed_light);
 }
 
 PathWorld optics_for_lights(const World& world) {
@@ -188,7 +187,7 @@ std::unique_ptr<CausticLights> make_caustic_lights(const World& world) {
     lights->optics = optics_for_lights(world);
     const auto faces = std::make_shared<ReceiverFaces>(world.objects);
     for (std::size_t l = 0; l < world.scene.lights.size(); ++l)
-        lights->by_light.push_back(world.scene.lights[l].caustics
+        lights->by_light.push_back(has_followed_light(world.scene.lights[l])
                                        ? make_beam_lights(world, lights->optics, l)
                                        : std::vector<std::unique_ptr<BeamLight>>());
     for (const auto& of_light : lights->by_light)

@@ -157,6 +157,12 @@ void SceneCheck::object(const Mesh& whole, const std::string& place) const {
                 require(color[k] >= 0 && color[k] <= 1, place + "/colors", "has a number outside 0..1");
     require(mesh.normals.empty() || mesh.normals.size() == count, place + "/normals",
             "needs one entry per triangle, or none");
+    require(mesh.baked.empty() || mesh.baked.size() == count, place + "/bakedLight",
+            "needs one entry per triangle, or none");
+    for (const BakedLight& light : mesh.baked)
+        for (const auto& side : {light.front, light.back})
+            for (const Vec3& at_corner : side)
+                require(is_finite(at_corner), place + "/bakedLight", "is not finite");
 }
 
 void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {

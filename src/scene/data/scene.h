@@ -86,6 +86,7 @@ struct ObjectMesh {
     std::vector<std::array<Vec4, 3>> colors;      // factors of the base colour and its alpha
     std::vector<std::array<Vec3, 3>> normals;     // unit
     std::vector<Id> material;                     // per triangle: index into Scene::materials
+    std::vector<BakedLight> baked;                // either empty or one entry per triangle
 };
 
 /// What an object's triangles were made of, where heights are.

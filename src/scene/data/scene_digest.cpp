@@ -180,8 +180,9 @@ void add(const EnvironmentLight& light, Digest& digest) {
 }
 
 void add(const Light& light, Digest& digest) {
-    const auto& [name, color, intensity, shadows, caustics, kind] = light;
+    const auto& [name, color, intensity, shadows, caustics, baked, kind] = light;
     digest.add_all(name, color, intensity, shadows, caustics, kind.index());
+    if (baked) digest.add(baked);  // keys of older sweeps stay
     std::visit([&](const auto& one) { add(one, digest); }, kind);
 }
 
@@ -212,8 +213,9 @@ void add(const Mesh& mesh, Digest& digest) {
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
-    const auto& [points, triangles, uvs, second_uvs, colors, corner_normals, materials] = object;
+    const auto& [points, triangles, uvs, second_uvs, colors, corner_normals, materials, baked] = object;
     digest.add_all(points, triangles, uvs, second_uvs, colors, corner_normals, materials);
+    if (!baked.empty()) digest.add(baked);  // keys of older sweeps stay
     digest.add(primitive.has_value());
     if (primitive) add(*primitive, digest);
     add(cage, digest);

@@ -107,6 +107,7 @@ MeshFields all_mesh_fields() {
     add_keys(subdivision_fields(), fields);
     add_keys(terrain_fields(), fields);
     fields.push_back(part<Mesh>("normals", ref("normals")));
+    fields.push_back(part<Mesh>("bakedLight", ref("bakedLight")));
     return fields;
 }
 
@@ -123,7 +124,7 @@ constexpr const char* kMeshRules = R"json({
   },
   "allOf": [
     { "if": { "properties": { "role": { "const": "optic" } } },
-      "then": { "title": "an optic", "required": ["material"], "properties": { "heights": false } } },
+      "then": { "title": "an optic", "required": ["material"], "properties": { "heights": false, "bakedLight": false } } },
     { "if": { "properties": { "role": { "const": "terrain" } } },
       "then": { "title": "a terrain", "required": ["heights"] } },
     { "if": { "required": ["heights"] },

@@ -43,7 +43,9 @@ const std::vector<Field<Light>>& light_fields() {
         setting("caustics", &Light::caustics, yes_or_no(),
                 "Whether its light is followed over mirrors and through glass to where it falls, as far as "
                 "maxDepth; objects, mirrors and glass then stop what comes straight, whatever 'shadows' says.")
-            .of({"directional", "point", "spot", "rectangle", "disk", "sphere", "environment"})};
+            .of({"directional", "point", "spot", "rectangle", "disk", "sphere", "environment"}),
+        setting("baked", &Light::baked, yes_or_no(),
+                "Whether its light is in the meshes' bakedLight: it shows as it does, but shines no more.")};
     return fields;
 }
 

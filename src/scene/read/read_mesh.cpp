@@ -222,6 +222,7 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     warn_count(uncovered_faces, "faces cross themselves: they are drawn as fans from their first corners",
                node.place, reading);
     warn_count(count_without_area(mesh.object), "triangles have no area", node.place, reading);
+    if (node.has("bakedLight")) read_baked_light(node["bakedLight"], mesh.object);
 }
 
 }  // namespace

@@ -122,6 +122,9 @@ void read_terrain(const Node& node, Mesh& mesh, Reading& reading);
 void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& reading);
 /// The patches of an object as polygons, in the world.
 PolygonMesh read_object_patches(const Node& node, Mesh& mesh);
+/// Divides an object's triangles as its `bakedLight` says, and gives them that light. Throws InputError where
+/// it is of another mesh.
+void read_baked_light(const Node& baked, ObjectMesh& object);
 /// What normals an object is lit by.
 ObjectShading read_shading(const Node& mesh);
 
@@ -181,8 +184,9 @@ Json transfer_point_schema();
 Json point_cloud_schema();
 Json label_schema();
 Json mesh_schema();
-Json region_schema();  // of a terrain
-Json patch_schema();   // of a mesh
+Json region_schema();       // of a terrain
+Json patch_schema();        // of a mesh
+Json baked_light_schema();  // of a mesh
 Json primitive_schema();
 Json lens_side_schema();  // of a primitive
 Json normals_schema();

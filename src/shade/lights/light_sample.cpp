@@ -33,6 +33,10 @@ Vec2 disk_place(const Vec2& square) {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
+/// Shadow rays end so far before a flat light, as a share of the scene's size: the light is an object, too,
+/// which would hide itself wherever rounding puts their ends behind it.
+constexpr double kBeforeLight = 1e-5;
+
 LightSample from_flat_light(const FlatPart& part, const LitPoint& at) {
     const Vec3 way = part.position - at.position;
     const double distance2 = dot(way, way);
@@ -41,7 +45,7 @@ LightSample from_flat_light(const FlatPart& part, const LitPoint& at) {
     const double cosine = -dot(toward, part.normal);
     if (!(cosine > 0)) return {};
     return {.toward = toward,
-            .target = part.position,
+            .target = part.position + kBeforeLight * at.scene_size * part.normal,
             .irradiance = cosine / distance2 * (part.area * part.radiance),
             .spread = std::sqrt(cosine * part.area / (std::numbers::pi * distance2))};
 }
