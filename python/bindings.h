@@ -100,6 +100,9 @@ struct HeldImage {
     py::dict statistics;  // empty where the image was not drawn here
 };
 
+/// What Image.statistics holds of a picture that was drawn.
+py::dict statistics_dict(const Picture& picture);
+
 // What render, explain and project have in common.
 
 using RendererClass = py::class_<Renderer, std::shared_ptr<Renderer>>;

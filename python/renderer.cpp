@@ -147,39 +147,7 @@ HeldImage draw(const Renderer& renderer, PictureRequest request, const Job& job,
             return glm::clamp(tone_mapped(light, mapping), 0.0, 1.0);
         };
     Picture picture = call.run([&] { return draw_or_write(renderer, request, job, call); });
-    py::dict statistics;
-    statistics["optic_pixels"] = picture.statistics.optic_pixels;
-    statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
-    statistics["subdivided_pixels"] = picture.statistics.subdivided_pixels;
-    statistics["traced_pixels"] = picture.statistics.traced_pixels;
-    statistics["layered_pixels"] = picture.statistics.layered_pixels;
-    statistics["projected_facets"] = picture.statistics.projected_facets;
-    statistics["certified_pixels"] = picture.statistics.certified_pixels;
-    statistics["certified_error"] = picture.statistics.certified_error;
-    statistics["predicted_error"] = picture.statistics.predicted_error;
-    py::list probes;
-    for (const OpticProbes& one : picture.statistics.probes) {
-        py::dict of_optic;
-        of_optic["object"] = one.object;
-        of_optic["surveyed_facets"] = one.surveyed;
-        of_optic["least_samples"] = one.least_samples;
-        of_optic["cost"] = one.cost;
-        of_optic["saved"] = one.saved;
-        probes.append(of_optic);
-    }
-    statistics["probes"] = probes;
-    statistics["outline_pixels"] = picture.statistics.outline_pixels;
-    statistics["deep_pixels"] = picture.statistics.deep_pixels;
-    statistics["marks"] = picture.statistics.marks;
-    statistics["hidden_marks"] = picture.statistics.hidden_marks;
-    statistics["unseen_marks"] = picture.statistics.unseen_marks;
-    statistics["fragment_pixels"] = picture.statistics.fragment_pixels;
-    statistics["fragments"] = picture.statistics.fragments;
-    statistics["fragments_per_pixel"] = picture.statistics.fragments_per_pixel();
-    statistics["rays_by_sample"] = picture.statistics.rays_by_sample;
-    statistics["pixels_shaded_by_sample"] = picture.statistics.pixels_shaded_by_sample;
-    statistics["prepare_seconds"] = picture.prepare_seconds;
-    statistics["draw_seconds"] = picture.draw_seconds;
+    const py::dict statistics = statistics_dict(picture);
     return {std::move(picture.image), statistics};
 }
 

@@ -89,7 +89,7 @@ Answer run(const AnamorphOptions& options, Console& console) {
         image_format(options.seen);
         check_output(options.seen, console);
     }
-    const Renderer renderer = load_renderer(options.scene, console);
+    const Renderer renderer = load_smooth_renderer(options.scene, console);
     const AnamorphRequest request = request_of(options, renderer, console);
     const Stopwatch watch;
     const Anamorph made = make_anamorph(renderer, request, console.progress("anamorph"));

@@ -90,6 +90,7 @@ Answer run(const CalibrationOptions& options, Console& console) {
     request.sigma = options.sigma;
     console.files().reads({options.scene.scene, options.points});
     const Scene scene = load_scene(options.scene, console);
+    warn_of_roughness(scene, console);
     const std::vector<Correspondence> pairs =
         is_standard_stream(options.points)
             ? parse_correspondences(standard_input("pairs are"), kStandardInput)

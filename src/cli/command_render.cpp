@@ -116,6 +116,7 @@ Answer run_vector(const RenderOptions& options, const std::string& format, const
     FrameParams frame = picture_request(options, {}).frame;
     frame.camera = camera;
     const bool is_obj = format == "obj";
+    warn_of_roughness(renderer.scene(), console);
     const LineDrawing drawing =
         renderer.draw_lines(frame, {options.wire, options.folds || is_obj, is_obj, false}, console.warner());
     Answer answer = write_output(options.output, is_obj ? drawing.obj : drawing.svg, console);

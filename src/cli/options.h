@@ -58,8 +58,11 @@ Scene load_scene(const SceneOptions& options, Console& console);
 /// The scene made ready for drawing.
 Renderer load_renderer(const SceneOptions& options, Console& console);
 
-/// The same for answers that know no roughness: a warning names the optics that are rough.
+/// The same for answers that know no roughness: see warn_of_roughness.
 Renderer load_smooth_renderer(const SceneOptions& options, Console& console);
+
+/// A warning for each optic that is rough: what is asked of the scene is answered as of smooth ones.
+void warn_of_roughness(const Scene& scene, Console& console);
 
 /// The window and layers asked for. Throws UsageError for texts that say none.
 LayerRequest layer_request(const SceneOptions& options);

@@ -234,14 +234,17 @@ Renderer load_renderer(const SceneOptions& options, Console& console) {
     return renderer;
 }
 
-Renderer load_smooth_renderer(const SceneOptions& options, Console& console) {
-    Renderer renderer = load_renderer(options, console);
-    const Scene& scene = renderer.scene();
+void warn_of_roughness(const Scene& scene, Console& console) {
     for (const Mesh& mesh : scene.meshes)
         if (mesh.role == Role::kOptic && scene.materials[mesh.material].roughness_factor > 0)
             console.warn(mesh.name +
                          " is rough, and answers are those of a smooth optic: where the middle of what it "
                          "shows of a ray lies");
+}
+
+Renderer load_smooth_renderer(const SceneOptions& options, Console& console) {
+    Renderer renderer = load_renderer(options, console);
+    warn_of_roughness(renderer.scene(), console);
     return renderer;
 }
 

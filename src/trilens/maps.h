@@ -16,8 +16,10 @@
 //     light.target = trilens::parse_target("tiles:256x256", renderer.scene());
 //     trilens::write_image("caustic.exr", trilens::image_of(trilens::make_caustic_map(renderer, light)));
 //
-//     const trilens::Renderer room(trilens::load_scene({"cornell.json"}));
-//     const trilens::Renderer lit(trilens::bake_light(room, {}).scene);
+//     trilens::BakeRequest coarse;
+//     coarse.patch_size = 0.2;
+//     coarse.contrast = 2;
+//     const trilens::Renderer lit(trilens::bake_light(renderer, coarse).scene);
 //     trilens::write_image("lit.exr", lit.draw({}).image);
 #pragma once
 

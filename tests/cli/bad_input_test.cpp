@@ -75,7 +75,7 @@ std::vector<BadScene> bad_scenes() {
          R"("material": "chrome")",
          R"("material": "crome")",
          {"/meshes/0/material", "crome", "chrome"}},
-        {"rough mirror", R"("roughnessFactor": 0)", R"("roughnessFactor": 0.3)", {"roughness"}},
+        {"rough mirror", R"("roughnessFactor": 0)", R"("roughnessFactor": 0.4)", {"roughness"}},
         {"missing mesh file",
          R"("points": [[-4,-4,5],[4,-4,5],[4,4,5],[-4,4,5]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3])",
          R"("file": "no-such.obj")",

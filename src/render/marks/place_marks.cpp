@@ -209,11 +209,13 @@ void tell_marks(const World& world, const PlacedMarks& marks, const Warn& warn) 
                          2 * kLongestSplat));
     if (!world.volumes.empty() || world.blended)
         warn("points and labels are not veiled by volumes and by what blends");
-    for (const Label& label : world.scene.labels)
-        if (!label.letters) {
-            warn("labels have no letters here, only their dots");
-            break;
-        }
+    if (std::any_of(world.optics.begin(), world.optics.end(), [&](const Optic& optic) {
+            return world.scene.materials[optic.material].roughness_factor > 0;
+        }))
+        warn("points and labels are as sharp in rough optics as in smooth ones");
+    if (std::any_of(world.scene.labels.begin(), world.scene.labels.end(),
+                    [](const Label& label) { return !label.letters; }))
+        warn("labels have no letters here, only their dots");
 }
 
 }  // namespace trilens
