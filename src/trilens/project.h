@@ -9,6 +9,6 @@
 #pragma once
 
 #include "render/project/project.h"
-#include "scene/formats/points_file.h"
 #include "scene/parameters.h"
+#include "scene/samples/points_file.h"
 #include "trilens/render.h"

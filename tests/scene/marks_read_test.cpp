@@ -9,7 +9,7 @@
 #include "base/math/srgb.h"
 #include "base/util/error.h"
 #include "scene/data/scene_digest.h"
-#include "scene/formats/point_cloud.h"
+#include "scene/samples/point_cloud.h"
 #include "scene/scene_text.h"
 #include "support/draw.h"
 #include "support/test.h"

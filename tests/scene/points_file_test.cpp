@@ -1,5 +1,5 @@
 // Points written as text.
-#include "scene/formats/points_file.h"
+#include "scene/samples/points_file.h"
 
 #include <random>
 #include <string>

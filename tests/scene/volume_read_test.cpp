@@ -8,7 +8,7 @@
 
 #include "base/util/error.h"
 #include "scene/data/scene_digest.h"
-#include "scene/formats/volume_file.h"
+#include "scene/samples/volume_file.h"
 #include "scene/scene_text.h"
 #include "support/test.h"
 

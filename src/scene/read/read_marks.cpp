@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "scene/data/polygons.h"
-#include "scene/formats/point_cloud.h"
 #include "scene/read/reading.h"
+#include "scene/samples/point_cloud.h"
 
 namespace trilens {
 

@@ -9,8 +9,8 @@
 
 #include "base/math/box.h"
 #include "base/util/names.h"
-#include "scene/formats/volume_file.h"
 #include "scene/read/reading.h"
+#include "scene/samples/volume_file.h"
 #include "volume/cell_checks.h"
 #include "volume/transfer_function.h"
 

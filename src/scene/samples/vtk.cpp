@@ -6,7 +6,7 @@
 
 #include "base/util/error.h"
 #include "scene/formats/line_scanner.h"
-#include "scene/formats/volume_file.h"
+#include "scene/samples/volume_file.h"
 
 namespace trilens {
 namespace {

@@ -1,63 +1,14 @@
 // Regular grids of samples: NRRD headers, and samples as they lie in memory.
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "base/util/error.h"
 #include "base/util/names.h"
 #include "scene/formats/line_scanner.h"
-#include "scene/formats/volume_file.h"
+#include "scene/samples/volume_file.h"
 
 namespace trilens {
 namespace {
-
-std::size_t bytes_of(SampleType type) {
-    switch (type) {
-        case SampleType::kUint16:
-        case SampleType::kInt16:
-            return 2;
-        case SampleType::kUint32:
-        case SampleType::kInt32:
-        case SampleType::kFloat:
-            return 4;
-        case SampleType::kDouble:
-            return 8;
-        default:
-            return 1;
-    }
-}
-
-template <typename T>
-double value_at(const char* bytes, bool swap) {
-    std::array<char, sizeof(T)> own;
-    for (std::size_t k = 0; k < own.size(); ++k) own[k] = bytes[swap ? own.size() - 1 - k : k];
-    T value;
-    std::memcpy(&value, own.data(), own.size());
-    return static_cast<double>(value);
-}
-
-double sample_at(const char* bytes, SampleType type, bool swap) {
-    switch (type) {
-        case SampleType::kUint8:
-            return value_at<std::uint8_t>(bytes, swap);
-        case SampleType::kInt8:
-            return value_at<std::int8_t>(bytes, swap);
-        case SampleType::kUint16:
-            return value_at<std::uint16_t>(bytes, swap);
-        case SampleType::kInt16:
-            return value_at<std::int16_t>(bytes, swap);
-        case SampleType::kUint32:
-            return value_at<std::uint32_t>(bytes, swap);
-        case SampleType::kInt32:
-            return value_at<std::int32_t>(bytes, swap);
-        case SampleType::kFloat:
-            return value_at<float>(bytes, swap);
-        case SampleType::kDouble:
-            return value_at<double>(bytes, swap);
-    }
-    return 0;
-}
 
 void check_finite(const std::vector<double>& samples, const std::array<std::size_t, 3>& size,
                   const std::string& file) {
@@ -101,10 +52,9 @@ std::vector<double> decode_samples(std::string_view bytes, const std::string& fi
                              std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
                              std::to_string(size[2]) + " samples of " + std::to_string(each) + " bytes are " +
                              std::to_string(count * each));
-    const bool swap = layout.big_endian != (std::endian::native == std::endian::big);
     std::vector<double> samples(count);
     for (std::size_t i = 0; i < count; ++i)
-        samples[i] = sample_at(bytes.data() + layout.skip + i * each, layout.type, swap);
+        samples[i] = number_at(bytes.data() + layout.skip + i * each, layout.type, layout.big_endian);
     check_finite(samples, size, file);
     return samples;
 }

@@ -1,75 +1,40 @@
 // Points and their colours out of PLY files, ASCII or binary of either byte order. Source: Turk, The PLY
 // Polygon File Format, 1994.
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <optional>
 
 #include "base/math/srgb.h"
 #include "base/util/error.h"
 #include "scene/data/scene.h"
 #include "scene/formats/line_scanner.h"
-#include "scene/formats/point_cloud.h"
+#include "scene/samples/binary_numbers.h"
+#include "scene/samples/point_cloud.h"
 
 namespace trilens {
 namespace {
 
-enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
-std::optional<PlyType> type_named(std::string_view name) {
-    constexpr std::array<std::array<const char*, 2>, 8> kNames{{{"char", "int8"},
-                                                                {"uchar", "uint8"},
-                                                                {"short", "int16"},
-                                                                {"ushort", "uint16"},
-                                                                {"int", "int32"},
-                                                                {"uint", "uint32"},
-                                                                {"float", "float32"},
-                                                                {"double", "float64"}}};
-    for (std::size_t i = 0; i < kNames.size(); ++i)
-        if (name == kNames[i][0] || name == kNames[i][1]) return static_cast<PlyType>(i);
+std::optional<SampleType> type_named(std::string_view name) {
+    constexpr struct {
+        SampleType type;
+        std::array<const char*, 2> names;
+    } kTypes[]{{SampleType::kInt8, {"char", "int8"}},      {SampleType::kUint8, {"uchar", "uint8"}},
+               {SampleType::kInt16, {"short", "int16"}},   {SampleType::kUint16, {"ushort", "uint16"}},
+               {SampleType::kInt32, {"int", "int32"}},     {SampleType::kUint32, {"uint", "uint32"}},
+               {SampleType::kFloat, {"float", "float32"}}, {SampleType::kDouble, {"double", "float64"}}};
+    for (const auto& [type, names] : kTypes)
+        if (name == names[0] || name == names[1]) return type;
     return std::nullopt;
 }
 
-std::size_t size_of(PlyType type) {
-    constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
-    return kSizes[static_cast<std::size_t>(type)];
-}
-
-template <typename T>
-double number_of(const char* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-}
-
-double number_of(const char* bytes, PlyType type) {
-    switch (type) {
-        case PlyType::kInt8:
-            return number_of<std::int8_t>(bytes);
-        case PlyType::kUint8:
-            return number_of<std::uint8_t>(bytes);
-        case PlyType::kInt16:
-            return number_of<std::int16_t>(bytes);
-        case PlyType::kUint16:
-            return number_of<std::uint16_t>(bytes);
-        case PlyType::kInt32:
-            return number_of<std::int32_t>(bytes);
-        case PlyType::kUint32:
-            return number_of<std::uint32_t>(bytes);
-        case PlyType::kFloat:
-            return number_of<float>(bytes);
-        case PlyType::kDouble:
-            break;
-    }
-    return number_of<double>(bytes);
+bool is_fraction(SampleType type) {
+    return type == SampleType::kFloat || type == SampleType::kDouble;
 }
 
 struct Property {
     std::string name;
-    PlyType type = PlyType::kFloat;
-    std::optional<PlyType> count;  // of a list: its length's
+    SampleType type = SampleType::kFloat;
+    std::optional<SampleType> count;  // of a list: its length's
 };
 
 struct Element {
@@ -121,7 +86,7 @@ class PlyReader {
     void read_property(std::span<const std::string_view> words);
     ColoredPoints read_vertices(const Element& element);
     void read_row(const Element& element, std::vector<double>& row);
-    double next_number(PlyType type);
+    double next_number(SampleType type);
 
     std::string_view bytes_;
     const std::string& file_;
@@ -146,11 +111,11 @@ void PlyReader::read_property(std::span<const std::string_view> words) {
     if (!is_list && words.size() != 3) fail("needs 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
     if (is_list) {
         property.count = type_named(words[2]);
-        if (!property.count || *property.count >= PlyType::kFloat)
+        if (!property.count || is_fraction(*property.count))
             fail("'" + std::string(words[2]) + "' is no type that counts");
     }
     const std::string_view type = words[words.size() - 2];
-    const std::optional<PlyType> known = type_named(type);
+    const std::optional<SampleType> known = type_named(type);
     if (!known) fail("'" + std::string(type) + "' is no type of PLY");
     property.type = *known;
     property.name = words.back();
@@ -182,7 +147,7 @@ void PlyReader::read_header() {
     if (form_ != PlyForm::kAscii) line_ = 0;
 }
 
-double PlyReader::next_number(PlyType type) {
+double PlyReader::next_number(SampleType type) {
     if (form_ == PlyForm::kAscii) {
         while (at_ < bytes_.size() && std::isspace(static_cast<unsigned char>(bytes_[at_])))
             line_ += bytes_[at_++] == '\n';
@@ -193,13 +158,10 @@ double PlyReader::next_number(PlyType type) {
         if (!number) fail("'" + std::string(bytes_.substr(begin, at_ - begin)) + "' is no number");
         return *number;
     }
-    const std::size_t size = size_of(type);
+    const std::size_t size = bytes_of(type);
     if (bytes_.size() - at_ < size) fail("ends before all that its header counts");
-    std::array<char, 8> own{};
-    const bool swap = (form_ == PlyForm::kBig) == (std::endian::native == std::endian::little);
-    for (std::size_t k = 0; k < size; ++k) own[k] = bytes_[at_ + (swap ? size - 1 - k : k)];
     at_ += size;
-    return number_of(own.data(), type);
+    return number_at(bytes_.data() + at_ - size, type, form_ == PlyForm::kBig);
 }
 
 /// One number per property, a list's 0.
@@ -218,9 +180,9 @@ void PlyReader::read_row(const Element& element, std::vector<double>& row) {
 }
 
 /// Whole numbers are sRGB, as scanners write them; others are linear.
-double linear_color(double value, PlyType type) {
-    if (type >= PlyType::kFloat) return value;
-    const double most = type == PlyType::kUint8 ? 255 : type == PlyType::kUint16 ? 65535 : 0;
+double linear_color(double value, SampleType type) {
+    if (is_fraction(type)) return value;
+    const double most = type == SampleType::kUint8 ? 255 : type == SampleType::kUint16 ? 65535 : 0;
     return most > 0 ? linear_from_srgb(value / most) : value;
 }
 

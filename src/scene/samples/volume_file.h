@@ -2,13 +2,13 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "scene/samples/binary_numbers.h"
 #include "volume/tet_mesh.h"
 
 namespace trilens {
@@ -28,12 +28,10 @@ struct VolumeFile {
 /// Source: The VTK User's Guide, "VTK File Formats".
 VolumeFile parse_vtk(const std::string& bytes, const std::string& file, const std::string& field);
 
-/// How samples lie in a file.
-enum class SampleType : std::uint8_t { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat, kDouble };
-
 /// As numpy and NRRD name them: "uint8", ..., "float", "double".
 const std::vector<std::string>& sample_type_names();
 
+/// How samples lie in a file.
 struct SampleLayout {
     SampleType type = SampleType::kUint8;
     bool big_endian = false;

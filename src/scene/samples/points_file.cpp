@@ -1,4 +1,4 @@
-#include "scene/formats/points_file.h"
+#include "scene/samples/points_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -12,7 +12,7 @@
 #include "base/util/parallel.h"
 #include "scene/data/scene.h"
 #include "scene/formats/line_scanner.h"
-#include "scene/formats/point_cloud.h"
+#include "scene/samples/point_cloud.h"
 
 namespace trilens {
 namespace {
