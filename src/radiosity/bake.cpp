@@ -54,7 +54,6 @@ void check_request(const BakeRequest& request) {
 struct PatchPass {
     PatchLight light;
     std::vector<double> area;  // per side of patches and of what stands between them
-    RadiosityProblem problem;
     RadiositySolution solution;
 };
 

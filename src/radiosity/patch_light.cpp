@@ -56,6 +56,7 @@ DirectLight::DirectLight(const World& world) : world_(world), white_(world.shadi
         material.brdf = Brdf::kLambert;
     }
     white_.mips.clear();
+    white_.colors.clear();
     white_.baked.clear();
 }
 

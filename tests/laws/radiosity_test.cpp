@@ -237,6 +237,33 @@ TEST_CASE("a lamp that is an object does not stand in its own light", "[shade][l
     CHECK(darker == 0);
 }
 
+TEST_CASE("colours at a mesh's points colour what it reflects, not the light that is baked",
+          "[radiosity][law]") {
+    const auto baked_floor = [](const std::string& colors) {
+        const auto world = world_from(
+            "floor",
+            R"({"version": 1, "cameras": [{"name": "c", "yfov": 40, "lookAt": {"eye": [0, 2, 4], "at": [0, 0, 0]}}],
+                "materials": [{"name": "white", "baseColorFactor": [0.7, 0.7, 0.7]}],
+                "meshes": [{"name": "floor", "role": "object", "material": "white", "points": [[-1,0,1],[1,0,1],[1,0,-1],[-1,0,-1]],
+                            "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3])" +
+                colors + R"(}],
+                "lights": [{"type": "point", "position": [0.3, 1, 0.2], "intensity": 2, "shadows": true}]})",
+            1);
+        return bake_light(*world, coarse_request()).scene.meshes[0].object.baked;
+    };
+    const std::vector<BakedLight> plain = baked_floor(""),
+                                  colored =
+                                      baked_floor(R"(, "colors": [[1,0,0],[0,1,0],[0.2,0.2,0.2],[0,0,1]])");
+    REQUIRE(plain.size() > 2);
+    REQUIRE(colored.size() == plain.size());
+    CHECK(plain[0].front[0].x > 0.05);
+    double most = 0;
+    for (std::size_t t = 0; t < plain.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k)
+            most = std::max(most, length(plain[t].front[k] - colored[t].front[k]));
+    CHECK(most == 0);
+}
+
 TEST_CASE("what cannot be baked is refused in words", "[radiosity][cli][bad-input]") {
     const std::string folder = scratch_dir("bake_bad");
     const std::string room = write_file(folder, "room.json", cornell_text());
