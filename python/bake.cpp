@@ -23,11 +23,13 @@ py::dict report_dict(const BakeReport& report) {
     for (const RadiosityStep& step : report.convergence)
         convergence.append(py::make_tuple(step.rows, step.unshot));
     py::dict made;
+    made["triangles"] = report.triangles;
     made["patches"] = report.patches;
     made["elements"] = report.elements;
     made["vertices"] = report.vertices;
     made["flat"] = report.flat;
     made["coarse"] = report.coarse;
+    made["passes"] = report.passes;
     made["power"] = power;
     made["convergence"] = convergence;
     made["mean_difference"] = report.check.mean;
@@ -86,8 +88,10 @@ void bind_bake(RendererClass& renderer) {
         "keep_lights: the lights go on shining; only what comes after is baked.\n"
         "file: the scene is written there, too: .json.\n"
         "progress: as in draw.\n"
-        "Returns (scene, report): the Scene with its light, and a dict: patches, elements, vertices, flat, "
-        "coarse,\npower (emitted, from_lights, absorbed, blocked, escaped, unshot: three colours each), "
+        "Returns (scene, report): the Scene with its light, and a dict: triangles, patches, elements, "
+        "vertices, "
+        "flat, coarse, passes,\npower (emitted, from_lights, absorbed, blocked, escaped, unshot: three "
+        "colours each), "
         "convergence (pairs of\nrows and the share unshot), mean_difference and most_difference of light by "
         "hemicubes and by rays, warnings.\n"
         "Raises UsageError for numbers out of range, InputError where nothing can be baked or nothing "

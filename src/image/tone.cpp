@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/luminance.h"
 #include "base/util/error.h"
 
 namespace trilens {
@@ -10,10 +11,9 @@ namespace {
 
 constexpr double kBrightest = 1e30;
 constexpr double kMostStops = 100;
-const Vec3 kLuminance(0.2126, 0.7152, 0.0722);  // of Rec.709
 
 Vec3 reinhard(const Vec3& colour, double white) {
-    const double light = dot(kLuminance, colour);
+    const double light = luminance(colour);
     return (1 + light / (white * white)) / (1 + light) * colour;
 }
 

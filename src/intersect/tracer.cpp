@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/raymesh/triangle_corners.h"
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "intersect/box_tree.h"
@@ -95,11 +96,6 @@ struct Group {
     Id first = kNone;
     Id count = 0;
 };
-
-std::array<Vec3, 3> corners_of(const TriangleScene& scene, std::size_t triangle) {
-    const IdTriple& corner = scene.triangles[triangle];
-    return {scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]};
-}
 
 Box box_of(const std::array<Vec3, 3>& corner) {
     const auto& [a, b, c] = corner;

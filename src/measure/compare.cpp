@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/math/luminance.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "measure/common/comparable.h"
@@ -96,15 +97,11 @@ std::size_t count_kind(const std::vector<std::uint8_t>& kinds, const Mask& mask,
 
 // --- Metrics ---
 
-double luminance(double r, double g, double b) {
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-}
-
 double ssim_of(const Image& image, const std::vector<ChannelPair>& rgb, const Mask& mask) {
     std::vector<double> reference(image.pixels()), test(image.pixels());
     for (std::size_t i = 0; i < image.pixels(); ++i) {
-        reference[i] = luminance(rgb[0].reference[i], rgb[1].reference[i], rgb[2].reference[i]);
-        test[i] = luminance(rgb[0].test[i], rgb[1].test[i], rgb[2].test[i]);
+        reference[i] = luminance({rgb[0].reference[i], rgb[1].reference[i], rgb[2].reference[i]});
+        test[i] = luminance({rgb[0].test[i], rgb[1].test[i], rgb[2].test[i]});
     }
     return structural_similarity({image.data_width, image.data_height, reference},
                                  {image.data_width, image.data_height, test}, mask);
@@ -293,9 +290,8 @@ void add_shift(const std::string& layer, const Displacement& displacement, Image
         if (size != difference.pixels())
             throw InputError("", layer, "its displacement is of an image of another size");
     std::vector<float> state(displacement.state.size());
-    std::ranges::transform(displacement.state, state.begin(), [](Shift shift) {
-        return kShiftMarks[static_cast<std::size_t>(shift)];
-    });
+    std::ranges::transform(displacement.state, state.begin(),
+                           [](Shift shift) { return kShiftMarks[static_cast<std::size_t>(shift)]; });
     add_channel(difference, layer + ".shift.X", displacement.shift_x);
     add_channel(difference, layer + ".shift.Y", displacement.shift_y);
     add_channel(difference, layer + ".shift.M", std::move(state));

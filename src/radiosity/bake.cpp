@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/math/box.h"
+#include "base/math/luminance.h"
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "json/json.h"
@@ -30,10 +31,6 @@ constexpr double kBytesPerFactor = sizeof(Id) + sizeof(double);
 constexpr double kMatrixCopies = 4;
 /// Rows that are kept while they are shot, as a share of the machine's memory.
 constexpr double kKeptShare = 0.25;
-
-double brightness(const Vec3& light) {
-    return 0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z;
-}
 
 void check_request(const BakeRequest& request) {
     const auto require = [](bool holds, const std::string& what) {
@@ -188,7 +185,7 @@ PatchPass Baker::solve(const DirectLight& direct, const TriangleScene& triangles
     const RadiosityProblem problem = problem_of(patches.light, patches.area);
     double power = 0;
     for (std::size_t s = 0; s < problem.area.size(); ++s)
-        power += problem.area[s] * brightness(problem.exitance[s]);
+        power += problem.area[s] * luminance(problem.exitance[s]);
     if (!(power > 0))
         throw InputError(title(), "/lights",
                          "nothing shines on the objects: there is neither a light that reaches them nor an "
@@ -219,7 +216,7 @@ std::vector<char> Baker::too_coarse(const PatchPass& patches, const VertexLight&
     double sum = 0, areas = 0;
     for (std::size_t s = 0; s < patches.light.sides.size(); ++s) {
         const double arriving =
-            brightness(patches.light.sides[s].direct + patches.solution.arriving[s] / std::numbers::pi);
+            luminance(patches.light.sides[s].direct + patches.solution.arriving[s] / std::numbers::pi);
         if (!(arriving > 0)) continue;
         sum += patches.area[s] * arriving;
         areas += patches.area[s];
@@ -232,7 +229,7 @@ std::vector<char> Baker::too_coarse(const PatchPass& patches, const VertexLight&
         double low = std::numeric_limits<double>::infinity(), high = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const LightAtVertex at = light.at(side, k);
-            const double here = brightness(at.direct + at.indirect);
+            const double here = luminance(at.direct + at.indirect);
             low = std::min(low, here), high = std::max(high, here);
         }
         if (!(high - low > most)) continue;
@@ -272,7 +269,7 @@ void Baker::check_vertices(const TriangleScene& triangles, const VertexLight& li
                            std::span<const Vec3> radiosity) {
     std::vector<std::size_t> lit;
     for (std::size_t v = 0; v < light.vertices().size(); ++v)
-        if (brightness(light.light()[v].indirect) > 0) lit.push_back(v);
+        if (luminance(light.light()[v].indirect) > 0) lit.push_back(v);
     const std::size_t count = std::min(request_.checked_vertices, lit.size());
     if (count == 0) return;
     const bool is_drawn = request_.form_factors == FormFactorMethod::kHemicube;
@@ -283,8 +280,8 @@ void Baker::check_vertices(const TriangleScene& triangles, const VertexLight& li
     parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const std::size_t v = lit[i * lit.size() / count];
-            const double here = std::numbers::pi * brightness(light.light()[v].indirect);
-            const double there = brightness(other.irradiance_at(light.vertices()[v].place, radiosity));
+            const double here = std::numbers::pi * luminance(light.light()[v].indirect);
+            const double there = luminance(other.irradiance_at(light.vertices()[v].place, radiosity));
             difference[i] = std::fabs(here - there) / std::max(here, there);
         }
     });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/raymesh/triangle_corners.h"
+
 namespace trilens {
 namespace {
 
@@ -19,11 +21,6 @@ void append_triangle(const std::array<Vec3, 3>& corners, Id object, Id primitive
     scene.triangles.push_back({first, first + 1, first + 2});
     scene.object.push_back(object);
     scene.primitive.push_back(primitive);
-}
-
-std::array<Vec3, 3> corners_in(const TriangleScene& scene, Id triangle) {
-    const IdTriple& corner = scene.triangles[triangle];
-    return {scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]};
 }
 
 }  // namespace
@@ -44,7 +41,7 @@ ElementMesh::ElementMesh(const World& world) : world_(world), parts_(world.scene
         parts_[mesh].element[number] = static_cast<Id>(elements_.size());
         elements_.push_back({mesh, number, t, kNone});
         IdTriple places;
-        const std::array<Vec3, 3> corner = corners_in(world.objects, t);
+        const std::array<Vec3, 3> corner = corners_of(world.objects, t);
         for (std::size_t k = 0; k < 3; ++k)
             places[k] = known
                             .emplace(Coordinates{corner[k].x, corner[k].y, corner[k].z},
@@ -68,13 +65,13 @@ std::shared_ptr<const TriangleScene> ElementMesh::triangles() const {
         append_triangle(corners(e), elements_[e].mesh, elements_[e].number, *scene);
     for (Id t = 0; t < world_.objects.size(); ++t)
         if (!is_lit_triangle(world_, t))
-            append_triangle(corners_in(world_.objects, t), world_.objects.object[t],
+            append_triangle(corners_of(world_.objects, t), world_.objects.object[t],
                             world_.objects.primitive[t], *scene);
     for (std::size_t i = 0; i < world_.optics.size(); ++i) {
         if (!world_.optics[i].mirror) continue;
         const TriangleScene facets = optic_facets(world_, i, grid_resolution(world_.optics[i], 0))->scene();
         for (Id f = 0; f < facets.size(); ++f)
-            append_triangle(corners_in(facets, f), facets.object[f], facets.primitive[f], *scene);
+            append_triangle(corners_of(facets, f), facets.object[f], facets.primitive[f], *scene);
     }
     return scene;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/raymesh/triangle_corners.h"
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "projector/projector.h"
@@ -15,19 +16,11 @@ namespace {
 constexpr double kTurn = 2.39996322972865332;  // the golden angle: no two hemicubes of a few stand alike
 constexpr int kMostScalings = 1000;
 
-std::array<Vec3, 3> triangle_corners(const TriangleScene& scene, Id triangle) {
-    const IdTriple& corner = scene.triangles[triangle];
-    return {scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]};
-}
-
-/// Evenly spread places on a triangle, of an additive recurrence in two dimensions.
-/// Source: Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018.
+/// Evenly spread places on a triangle.
 Vec3 spread_weights(std::size_t i) {
-    double a = 0.5 + 0.75487766624669276 * static_cast<double>(i);
-    double b = 0.5 + 0.56984029099805327 * static_cast<double>(i);
-    a -= std::floor(a), b -= std::floor(b);
-    if (a + b > 1) a = 1 - a, b = 1 - b;
-    return {1 - a - b, a, b};
+    Vec2 place = recurrent_place(i);
+    if (place.x + place.y > 1) place = Vec2(1) - place;
+    return {1 - place.x - place.y, place.x, place.y};
 }
 
 double row_sum(const FormFactorRow& row) {
@@ -53,7 +46,7 @@ std::vector<Vec3> middles_of_parts(int n) {
 std::vector<double> triangle_areas(const TriangleScene& scene) {
     std::vector<double> areas;
     for (Id t = 0; t < scene.size(); ++t) {
-        const std::array<Vec3, 3> corner = triangle_corners(scene, t);
+        const std::array<Vec3, 3> corner = corners_of(scene, t);
         areas.push_back(
             has_no_area(corner) ? 0 : 0.5 * length(cross(corner[1] - corner[0], corner[2] - corner[0])));
     }
@@ -63,7 +56,7 @@ std::vector<double> triangle_areas(const TriangleScene& scene) {
 FormFactors::FormFactors(std::shared_ptr<const TriangleScene> scene, const FormFactorParams& params)
     : scene_(std::move(scene)), params_(params), hemicube_(params.resolution) {
     for (Id t = 0; t < scene_->size(); ++t) {
-        const std::array<Vec3, 3> corner = triangle_corners(*scene_, t);
+        const std::array<Vec3, 3> corner = corners_of(*scene_, t);
         normals_.push_back(has_no_area(corner)
                                ? Vec3(0)
                                : normalize_or_zero(cross(corner[1] - corner[0], corner[2] - corner[0])));
@@ -76,7 +69,7 @@ FormFactors::FormFactors(std::shared_ptr<const TriangleScene> scene, const FormF
 
 HemicubePlace FormFactors::place_of(Id side, const Vec3& weights) const {
     const Id triangle = side / 2;
-    const std::array<Vec3, 3> corner = triangle_corners(*scene_, triangle);
+    const std::array<Vec3, 3> corner = corners_of(*scene_, triangle);
     HemicubePlace place;
     place.normal = side % 2 == 0 ? normals_[triangle] : -normals_[triangle];
     place.origin =

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/math/luminance.h"
 #include "shade/lights/light_sample.h"
 #include "shade/shade.h"
 
@@ -11,7 +12,6 @@ namespace trilens {
 namespace {
 
 constexpr int kColumns = 512, kRows = 256;
-constexpr Vec3 kLuminance{0.2126, 0.7152, 0.0722};  // of linear Rec.709
 
 /// Columns first .. last - 1 and rows of the cells.
 struct Region {
@@ -62,7 +62,7 @@ Cells::Cells(const Background& background) {
             flux_[cell(x, y)] =
                 solid_angle *
                 (map ? background_radiance(background, *map, unit, {across, down}) : background.color);
-            row += dot(kLuminance, flux_[cell(x, y)]);
+            row += luminance(flux_[cell(x, y)]);
             sums_[cell(x, y)] = row + (y > 0 ? sums_[cell(x, y - 1)] : 0);
         }
     }

@@ -56,10 +56,7 @@ double visible_density(const RoughSurface& surface, const Vec3& microfacet) {
 }
 
 Vec2 RoughWay::place(std::size_t meeting) const {
-    // The shifts themselves are a sequence of the same kind, of the plane's golden ratio.
-    const auto turns = static_cast<double>(shift);
-    const Vec2 inside{fraction(0.5 + 0.75487766624669276 * turns),
-                      fraction(0.5 + 0.56984029099805327 * turns)};
+    const Vec2 inside = recurrent_place(shift);
     if (meeting == 0) {
         const Vec2 middle = stratified_place(sample, count);
         const auto columns = static_cast<double>(count),

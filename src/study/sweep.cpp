@@ -142,7 +142,7 @@ SweepSubject subject_of(const SweepRequest& request, const SweepAxes& axes, cons
 
 void add(const LayerRequest& window, Digest& digest) {
     // How often pixels are shaded is no matter to truths: picture_key adds it.
-    [[maybe_unused]] const auto& [x0, y0, x1, y1, layers, shown, shading, marks] = window;
+    [[maybe_unused]] const auto& [x0, y0, x1, y1, layers, shown, shading] = window;
     TRILENS_CHECK(!shown, "pictures of sweeps hold light");
     digest.add_all(x0, y0, x1, y1, layers.size());
     for (const std::string& layer : layers) digest.add(layer);

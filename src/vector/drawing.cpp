@@ -205,10 +205,8 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
                 for (EdgeCurve& curve : drawing->layers.back()->curves)
                     curve.facet = frame.optics[i].grid_facet(paths.leaves[node.leaves[curve.facet]].facet);
             }
-    if (!world.scene.points.empty() || !world.scene.labels.empty()) {
-        drawing->marks = place_marks(world, params);
-        if (warn) tell_marks(world, drawing->marks, warn);
-    }
+    drawing->marks = place_marks(world, params);
+    if (warn) tell_marks(world, drawing->marks, warn);
     return drawing;
 }
 

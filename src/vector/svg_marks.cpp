@@ -20,14 +20,12 @@ std::string hex_color(const Vec3& light) {
 }
 
 std::string ellipse(const PlacedMark& mark) {
-    const double middle = 0.5 * (mark.xx + mark.yy), radius = std::hypot(0.5 * (mark.xx - mark.yy), mark.xy);
-    const double angle = 0.5 * std::atan2(2 * mark.xy, mark.xx - mark.yy) * 180 / std::numbers::pi;
     return fmt::format(
         "<ellipse cx=\"{0:.4f}\" cy=\"{1:.4f}\" rx=\"{2:.4f}\" ry=\"{3:.4f}\" transform=\"rotate({4:.4f} "
         "{0:.4f} "
         "{1:.4f})\" fill=\"{5}\" fill-opacity=\"{6:.4f}\"/>",
-        mark.pixel.x, mark.pixel.y, std::sqrt(middle + radius), std::sqrt(std::max(0.0, middle - radius)),
-        angle, hex_color(mark.light), mark.opacity);
+        mark.pixel.x, mark.pixel.y, std::sqrt(mark.spread.most()), std::sqrt(mark.spread.least()),
+        mark.spread.angle() * 180 / std::numbers::pi, hex_color(mark.light), mark.opacity);
 }
 
 std::string text(const PlacedMark& mark, const Label& label) {
@@ -49,7 +47,7 @@ std::string marks_svg(const PlacedMarks& marks, const World& world) {
         svg += fmt::format("<g class=\"{}\" data-{}=\"{}\" data-point=\"{}\"", path_name(mark.path),
                            mark.is_label ? "label" : "points", mark.entry, mark.point);
         if (mark.optic != kNone) svg += fmt::format(" data-optic=\"{}\"", mark.optic);
-        svg += ">" + (mark.xx > 0 ? ellipse(mark) : "");
+        svg += ">" + (mark.spread.xx > 0 ? ellipse(mark) : "");
         if (mark.is_label) svg += text(mark, world.scene.labels[mark.entry]);
         svg += "</g>\n";
     }

@@ -120,8 +120,7 @@ TEST_CASE("a splat smaller than a pixel keeps its light", "[marks][law]") {
         const Vec3 eye(0.1, 0.7, 5), way = Vec3(0.3, 0.9, 2) - eye;
         const double depth = dot(way, normalize(-eye));
         const double pixels = 60 / std::tan(22.5 * std::numbers::pi / 180) / depth * radius;
-        const double area =
-            std::numbers::pi * std::sqrt(direct->xx * direct->yy - direct->xy * direct->xy) * direct->opacity;
+        const double area = std::numbers::pi * std::sqrt(direct->spread.determinant()) * direct->opacity;
         const double slant = length(way) / depth;  // a ball off the axis is longer than wide
         CAPTURE(radius, pixels);
         CHECK(area == Approx(std::numbers::pi * pixels * pixels * slant).epsilon(0.01));
@@ -207,7 +206,7 @@ TEST_CASE("a splat at a fold ends, one of least weight is left out, and dispersi
     const PlacedMarks placed = place_marks(*world, {});
     double longest = 0;
     for (const PlacedMark& mark : placed.marks)
-        longest = std::max({longest, std::sqrt(mark.xx), std::sqrt(mark.yy)});
+        longest = std::max({longest, std::sqrt(mark.spread.xx), std::sqrt(mark.spread.yy)});
     CAPTURE(placed.marks.size(), placed.cut);
     CHECK(placed.cut > 0);
     CHECK(longest <= kLongestSplat + 0.01);

@@ -30,6 +30,7 @@ TEST_CASE("sweep: pictures lie beside the page where they would make it too larg
         REQUIRE_FALSE(beyond.runs[i].pictures.empty());
         for (std::size_t k = 0; k < beyond.runs[i].pictures.size(); ++k) {
             const PagePicture &embedded = within.runs[i].pictures[k], &linked = beyond.runs[i].pictures[k];
+            CAPTURE(embedded.caption, linked.caption);
             if (embedded.png.empty()) continue;  // nothing to show: its caption says why
             CHECK(linked.png.empty());
             CHECK(std::filesystem::file_size(fake.params.folder + "/" + linked.file) == embedded.png.size());

@@ -28,8 +28,8 @@ struct PointCloud {
     std::vector<Vec3> places;  // world frame, transform applied
     std::vector<Vec3> colors;  // linear; one per place, or empty: all have `color`
     Vec3 color{1};
-    double radius = 0;      // scene units, of the balls that they are; 0: `size` says
-    double size = 3;        // pixels across, however far they are
+    double radius = 0;         // scene units, of the balls that they are; 0: `size` says
+    double size = 3;           // pixels across, however far they are
     double min_weight = 0.01;  // images that carry less of their light in every colour are left out
 };
 

@@ -118,7 +118,8 @@ void for_each_length(PlanePrimitive& plane, const Use& use) {
 }
 
 /// A closed body between two sides, with a straight edge from rim to rim. Its centre is the vertex of its
-/// front side, its axis goes from there to that of its back. Its sides' shapes are scaled by with_scaled_shape().
+/// front side, its axis goes from there to that of its back. Its sides' shapes are scaled by
+/// with_scaled_shape().
 struct LensPrimitive {
     static constexpr const char* kName = "lens";
     double thickness = 0.5;  // along the axis

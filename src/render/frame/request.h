@@ -14,8 +14,6 @@
 
 namespace trilens {
 
-class MarkPainter;
-
 /// FrameParams::max_error where no facet is divided for what it is predicted to be off by.
 inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
 
@@ -114,9 +112,6 @@ struct LayerRequest {
     // samples beside it: edges stay jagged, and filters with negative lobes leave dark rings.
     std::function<Vec3(const Vec3& light)> shown = {};
     Shading shading = Shading::kFragment;
-    // What is painted over the pixels; null: nothing. Of a picture the scene's points and labels, whatever
-    // stands here.
-    const MarkPainter* marks = nullptr;
 };
 
 struct PictureRequest {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/luminance.h"
 #include "render/marks/marks.h"
 #include "render/world/world.h"
 
@@ -22,7 +23,7 @@ const TextMask* letters_of(const World& world, const PlacedMark& mark) {
 
 /// All that a mark may cover.
 PixelBox box_of(const World& world, const PlacedMark& mark) {
-    const Vec2 half(std::sqrt(mark.xx), std::sqrt(mark.yy));
+    const Vec2 half(std::sqrt(mark.spread.xx), std::sqrt(mark.spread.yy));
     Vec2 low = mark.pixel - half, high = mark.pixel + half;
     if (const TextMask* letters = letters_of(world, mark)) {
         const Vec2 corner = MarkPainter::text_corner(world, mark);
@@ -40,13 +41,14 @@ PixelBox box_of(const World& world, const PlacedMark& mark) {
 
 /// The share of the pixel at x, y that the mark's ellipse covers.
 double covered(const PlacedMark& mark, int x, int y) {
-    const double determinant = mark.xx * mark.yy - mark.xy * mark.xy;
+    const Spread& s = mark.spread;
+    const double determinant = s.determinant();
     if (!(determinant > 0)) return 0;
     int inside = 0;
     for (int j = 0; j < kCoverageSide; ++j)
         for (int i = 0; i < kCoverageSide; ++i) {
             const Vec2 d = Vec2(x + (i + 0.5) / kCoverageSide, y + (j + 0.5) / kCoverageSide) - mark.pixel;
-            inside += mark.yy * d.x * d.x - 2 * mark.xy * d.x * d.y + mark.xx * d.y * d.y <= determinant;
+            inside += s.yy * d.x * d.x - 2 * s.xy * d.x * d.y + s.xx * d.y * d.y <= determinant;
         }
     return static_cast<double>(inside) / (kCoverageSide * kCoverageSide);
 }
@@ -79,8 +81,7 @@ double halo_at(const TextMask& mask, const Vec2& place) {
 }  // namespace
 
 Vec3 contrast_of(const Vec3& color) {
-    const double luminance = 0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z;
-    return Vec3(luminance > 0.2 ? 0 : 1);
+    return Vec3(luminance(color) > 0.2 ? 0 : 1);
 }
 
 Vec2 MarkPainter::text_corner(const World& world, const PlacedMark& mark) {

@@ -3,6 +3,8 @@
 // the projection's derivative makes of a ball).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -17,6 +19,22 @@ namespace trilens {
 
 struct World;
 
+/// An ellipse about a pixel p0: the p with (p - p0)^T S^-1 (p - p0) <= 1, S = (xx, xy; xy, yy), square
+/// pixels.
+struct Spread {
+    double xx = 0, xy = 0, yy = 0;
+
+    double determinant() const { return xx * yy - xy * xy; }
+    // Squares of its longer and its shorter half axis, and the angle from x to the longer one.
+    double most() const { return middle() + radius(); }
+    double least() const { return std::max(0.0, middle() - radius()); }
+    double angle() const { return 0.5 * std::atan2(2 * xy, xx - yy); }
+
+  private:
+    double middle() const { return 0.5 * (xx + yy); }
+    double radius() const { return std::hypot(0.5 * (xx - yy), xy); }
+};
+
 /// One image of a point, or of a label's place.
 struct PlacedMark {
     bool is_label = false;
@@ -26,13 +44,11 @@ struct PlacedMark {
     Id optic = kNone;       // object id of the first optic; kNone: seen directly
     std::size_t steps = 0;  // meetings with optics
     Vec2 pixel{0};          // from the film's top left; a pixel's centre is at .5
-    // Its ellipse, or a label's dot: the pixels at p with (p - pixel)^T S^-1 (p - pixel) <= 1; of a label
-    // without one 0. S = (xx, xy; xy, yy), square pixels.
-    double xx = 0, xy = 0, yy = 0;
-    double opacity = 1;   // below 1 where the ellipse was widened to be as wide as a pixel
-    double distance = 0;  // along the path from the first optic's event, or the eye, scene units
-    Vec3 light{0};        // its colour times what the path lets through
-    double replaces = 1;  // the share that it hides of the light that comes its way
+    Spread spread;          // of its ellipse, or a label's dot; zero: it has none
+    double opacity = 1;     // below 1 where the ellipse was widened to be as wide as a pixel
+    double distance = 0;    // along the path from the first optic's event, or the eye, scene units
+    Vec3 light{0};          // its colour times what the path lets through
+    double replaces = 1;    // the share that it hides of the light that comes its way
 };
 
 /// What a frame shows of a scene's marks.

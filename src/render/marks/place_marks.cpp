@@ -15,17 +15,6 @@ constexpr std::size_t kPointsAtOnce = 1u << 16;  // whose images are held whole
 /// The square of half a pixel: no ellipse is narrower, and where it would be it is that much fainter.
 constexpr double kLeastSquare = 0.25;
 
-/// A symmetric matrix of two rows.
-struct Spread {
-    double xx = 0, xy = 0, yy = 0;
-
-    double determinant() const { return xx * yy - xy * xy; }
-    double middle() const { return 0.5 * (xx + yy); }
-    double radius() const { return std::hypot(0.5 * (xx - yy), xy); }
-    double least() const { return std::max(0.0, middle() - radius()); }
-    double most() const { return middle() + radius(); }
-};
-
 Spread round_spread(double width) {
     const double half = 0.5 * width;
     return {half * half, 0, half * half};
@@ -40,8 +29,7 @@ Spread spread_of(const std::array<Vec3, 2>& derivative, double radius) {
 
 /// Its longer axis cut to `most` (square pixels).
 Spread cut_to(const Spread& spread, double most) {
-    const double angle = 0.5 * std::atan2(2 * spread.xy, spread.xx - spread.yy);
-    const Vec2 along(std::cos(angle), std::sin(angle));
+    const Vec2 along(std::cos(spread.angle()), std::sin(spread.angle()));
     // The shorter one by the product of both: a difference would be rounding's.
     const double least = std::min(most, std::max(0.0, spread.determinant() / spread.most()));
     return {most * along.x * along.x + least * along.y * along.y, (most - least) * along.x * along.y,
@@ -55,7 +43,7 @@ void set_spread(Spread spread, PlacedMark& mark) {
         spread.xx += more, spread.yy += more;
         mark.opacity = std::sqrt(before / spread.determinant());
     }
-    mark.xx = spread.xx, mark.xy = spread.xy, mark.yy = spread.yy;
+    mark.spread = spread;
 }
 
 /// From the first event, or the eye, to the point.
@@ -171,6 +159,7 @@ PlacedMarks Placing::take() {
 }  // namespace
 
 PlacedMarks place_marks(const World& world, const FrameParams& frame, const Progress& progress) {
+    if (world.scene.points.empty() && world.scene.labels.empty()) return {};
     Placing placing(world, frame);
     std::size_t done = 0, all = 0;
     for (const PointCloud& cloud : world.scene.points) all += cloud.places.size();
@@ -209,10 +198,7 @@ void tell_marks(const World& world, const PlacedMarks& marks, const Warn& warn) 
                          2 * kLongestSplat));
     if (!world.volumes.empty() || world.blended)
         warn("points and labels are not veiled by volumes and by what blends");
-    if (std::any_of(world.optics.begin(), world.optics.end(), [&](const Optic& optic) {
-            return world.scene.materials[optic.material].roughness_factor > 0;
-        }))
-        warn("points and labels are as sharp in rough optics as in smooth ones");
+    if (has_rough_optics(world)) warn("points and labels are as sharp in rough optics as in smooth ones");
     if (std::any_of(world.scene.labels.begin(), world.scene.labels.end(),
                     [](const Label& label) { return !label.letters; }))
         warn("labels have no letters here, only their dots");

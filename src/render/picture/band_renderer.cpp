@@ -36,6 +36,11 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
                              incidence.cosine);
 }
 
+/// Whether light is gathered over what a sample stands for, however many a pixel has.
+bool gathers_light(const World& world) {
+    return has_caustics(world) || has_rough_optics(world);
+}
+
 SampleColour mean_colour(const PixelFilter& filter, std::span<const SampleColour> samples) {
     SampleColour sum, mean;
     for (const SampleColour& sample : samples) add(sum, 1, filter.averaged(sample));
@@ -58,9 +63,8 @@ class FilteredSamples {
         colours_.resize(grid_.size());
         const RayDifferentials differentials(world, viewer, grid_);
         parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
-            sample_colours(
-                world, views, from, std::span(colours_).subspan(from, to - from),
-                grid_.side == 1 || has_caustics(world) || has_rough_optics(world) ? &differentials : nullptr);
+            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from),
+                           grid_.side == 1 || gathers_light(world) ? &differentials : nullptr);
             for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
         });
     }
@@ -202,7 +206,7 @@ void find_colours(const BandSource& source, const Band& band, std::size_t first,
     std::vector<SampleColour> samples(colours.size() * per_pixel);
     const RayDifferentials differentials(world, viewer, grid);
     sample_colours(world, band.views, first * per_pixel, samples,
-                   has_caustics(world) || has_rough_optics(world) ? &differentials : nullptr);
+                   gathers_light(world) ? &differentials : nullptr);
     for (std::size_t i = 0; i < colours.size(); ++i)
         colours[i] = mean_colour(filter, std::span(samples).subspan(i * per_pixel, per_pixel));
 }
@@ -305,7 +309,8 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
 }  // namespace
 
 Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
-                  LayerStatistics* statistics, const StripSink* sink) {
+                  const LayerOutput& output) {
+    const auto& [statistics, sink, marks] = output;
     const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
     const bool by_fragments = makes_fragments(world, viewer, request, side);
     const int rows =
@@ -328,7 +333,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
-    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage(), request.marks};
+    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage(), marks};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -213,7 +212,7 @@ void check_certify(const PictureRequest& request) {
 
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
                      const Warn& warn, const StripSink* sink) {
-    LayerRequest layers = checked_layers(world, request.layers);
+    const LayerRequest layers = checked_layers(world, request.layers);
     check_certify(request);
     check_film_fits(world, layers, sink != nullptr);
     warn_of_roughness(world, request.frame, request.engine, warn);
@@ -221,13 +220,8 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     Picture picture;
     const Stopwatch preparing;
     const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, warn);
-    std::optional<PlacedMarks> marks;
-    std::optional<MarkPainter> painter;
-    if (!world.scene.points.empty() || !world.scene.labels.empty()) {
-        marks = place_marks(world, request.frame, {nullptr, progress.cancel});
-        painter.emplace(world, *marks, layers.shown);
-    }
-    layers.marks = painter ? &*painter : nullptr;
+    const PlacedMarks marks = place_marks(world, request.frame, {nullptr, progress.cancel});
+    const MarkPainter painter(world, marks, layers.shown);
     picture.prepare_seconds = preparing.seconds();
 
     // Strips pass by the one who watches to the one who takes the picture; without one they are collected.
@@ -251,22 +245,21 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     };
     const bool in_strips = sink || request.watch;
     const Stopwatch drawing;
-    picture.image =
-        draw_layers(world, *viewer, layers, progress, &picture.statistics, in_strips ? &described : nullptr);
+    picture.image = draw_layers(
+        world, *viewer, layers, progress,
+        {&picture.statistics, in_strips ? &described : nullptr, marks.marks.empty() ? nullptr : &painter});
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();
     picture.statistics.probes = probes_of(world, *viewer);
-    if (marks) {
-        picture.statistics.marks = marks->marks.size();
-        picture.statistics.hidden_marks = marks->hidden;
-        picture.statistics.unseen_marks = marks->unseen;
-    }
+    picture.statistics.marks = marks.marks.size();
+    picture.statistics.hidden_marks = marks.hidden;
+    picture.statistics.unseen_marks = marks.unseen;
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);
         tell_omissions(world, request.engine.engine, picture.statistics, warn);
         tell_crowded_out(picture.statistics, warn);
-        if (marks) tell_marks(world, *marks, warn);
+        tell_marks(world, marks, warn);
     }
     return picture;
 }

@@ -8,6 +8,7 @@
 
 namespace trilens {
 
+class MarkPainter;
 struct World;
 
 /// Draws the picture. Warns of what the user would want to know: optics off screen, pixels without a ray.
@@ -18,12 +19,18 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
 
 // From views to an image, band by band: shading, the filter, and the channels.
 
+/// What a drawing is put into, and what is put over it; each may be null.
+struct LayerOutput {
+    LayerStatistics* statistics = nullptr;
+    const StripSink* sink = nullptr;  // takes the pixels band by band
+    const MarkPainter* marks = nullptr;
+};
+
 /// Draws the window, which lies on the film and is not empty, band by band. Colours are the mean over the
 /// samples of a pixel, or as the film's filter weights those around; ids, positions and depths are those of
 /// the pixel's centre, whatever the number of samples. Throws Interrupted, and ComputationError when a pixel
-/// is not finite. `sink`: takes the pixels band by band where it is given; then the image that comes back has
-/// no channels.
+/// is not finite. With a sink the image that comes back has no channels.
 Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
-                  LayerStatistics* statistics = nullptr, const StripSink* sink = nullptr);
+                  const LayerOutput& output);
 
 }  // namespace trilens

@@ -151,17 +151,7 @@ void Gathering::shade(SampleColour& colour) {
             passed * seen_[i].weight * light[i];
 }
 
-bool is_rough(const World& world, Id optic) {
-    return world.scene.materials[world.optics[optic].material].roughness_factor > 0;
-}
-
 }  // namespace
-
-bool has_rough_optics(const World& world) {
-    for (std::size_t i = 0; i < world.optics.size(); ++i)
-        if (is_rough(world, static_cast<Id>(i))) return true;
-    return false;
-}
 
 bool meets_rough_optic(const World& world, const SampleViews& views, const SampleView& view) {
     if (view.optic == kNone || view.ray.direction == Vec3(0)) return false;

@@ -26,9 +26,6 @@ struct RoughGather {
     std::function<std::optional<RayDifferential>(const PathEnd&)> differential = {};
 };
 
-/// Whether any optic is rough.
-bool has_rough_optics(const World& world);
-
 /// Whether the sample shows a rough optic, or one in which smooth optics would show it a rough one.
 bool meets_rough_optic(const World& world, const SampleViews& views, const SampleView& view);
 

@@ -5,17 +5,13 @@
 #include <utility>
 
 #include "base/math/box.h"
+#include "base/raymesh/triangle_corners.h"
 #include "intersect/tracer.h"
 
 namespace trilens {
 namespace {
 
 constexpr double kOnEdge = 1e-9;  // weights of less lie on a triangle's edge
-
-std::array<Vec3, 3> corners_of(const TriangleScene& scene, Id triangle) {
-    const IdTriple& corner = scene.triangles[triangle];
-    return {scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]};
-}
 
 std::vector<Box> boxes_of(const TriangleScene& scene) {
     std::vector<Box> boxes(scene.size());

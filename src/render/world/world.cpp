@@ -337,4 +337,14 @@ SceneReuse change_scene(World& world, Scene scene, const Warn& warn) {
     return kept;
 }
 
+bool is_rough(const World& world, Id optic) {
+    return world.scene.materials[world.optics[optic].material].roughness_factor > 0;
+}
+
+bool has_rough_optics(const World& world) {
+    for (Id i = 0; i < world.optics.size(); ++i)
+        if (is_rough(world, i)) return true;
+    return false;
+}
+
 }  // namespace trilens

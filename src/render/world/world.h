@@ -149,6 +149,10 @@ std::vector<BeamSource> beam_sources(const Light& light, const Background& backg
 /// Whether any light is followed over optics.
 bool has_caustics(const World& world);
 
+/// Whether an optic is rough, and whether any is.
+bool is_rough(const World& world, Id optic);
+bool has_rough_optics(const World& world);
+
 /// The beams of one light of the scene, of each of its samples, whether it says that it is followed or not.
 /// Throws UsageError for a light that has none.
 std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, const PathWorld& optics,

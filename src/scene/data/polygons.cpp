@@ -63,11 +63,16 @@ void add_triangle(const PolygonMesh& mesh, const std::array<std::size_t, 3>& cor
 
 }  // namespace
 
-bool place(PolygonMesh& mesh, const Transform& transform) {
-    for (Vec3& point : mesh.cage.points) {
+bool place(std::vector<Vec3>& points, const Transform& transform) {
+    for (Vec3& point : points) {
         point = map_point(transform, point);
         if (!in_range(point)) return false;
     }
+    return true;
+}
+
+bool place(PolygonMesh& mesh, const Transform& transform) {
+    if (!place(mesh.cage.points, transform)) return false;
     const Mat3 normals = normal_map(transform);
     for (Vec3& normal : mesh.normals) normal = normalize_or_zero(normals * normalize_or_zero(normal));
     if (mirrors(transform)) {

@@ -76,6 +76,9 @@ struct PolygonMesh {
     bool is_triangle_soup = false;    // a point may stand there several times, as in glTF
 };
 
+/// Moves points. Returns false where one leaves the range of coordinates.
+bool place(std::vector<Vec3>& points, const Transform& transform);
+
 /// Moves points and normals; a mirroring transform also reverses the corners of each face after the first, so
 /// that fronts stay fronts. Returns false where a point leaves the range of coordinates.
 bool place(PolygonMesh& mesh, const Transform& transform);

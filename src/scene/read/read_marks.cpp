@@ -79,13 +79,8 @@ PointCloud read_cloud(const Node& node, std::size_t index, Reading& reading) {
     } else {
         for (const Json& place : node["at"].json) cloud.places.push_back(to_vec3(place));
     }
-    const Transform transform = read_transform(node);
-    for (Vec3& place : cloud.places) {
-        place = map_point(transform, place);
-        for (int k = 0; k < 3; ++k)
-            if (!(std::fabs(place[k]) <= kLargestCoordinate))
-                node["transform"].fail("carries points beyond coordinates of 1e30");
-    }
+    if (!place(cloud.places, read_transform(node)))
+        node["transform"].fail("carries points beyond coordinates of 1e30");
     return cloud;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/math/luminance.h"
 #include "base/math/srgb.h"
 #include "scene/read/reading.h"
 
@@ -236,7 +237,7 @@ std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const 
         const auto row = static_cast<std::size_t>(wrapped(y, heights.height, wrap.wrap_t));
         const auto column = static_cast<std::size_t>(wrapped(x, heights.width, wrap.wrap_s));
         const float* rgb = &heights.rgb[3 * (row * static_cast<std::size_t>(heights.width) + column)];
-        return dot(Vec3(rgb[0], rgb[1], rgb[2]), Vec3(0.2126, 0.7152, 0.0722));
+        return luminance(Vec3(rgb[0], rgb[1], rgb[2]));
     };
     auto normals = std::make_shared<Texture>();
     normals->width = heights.width;

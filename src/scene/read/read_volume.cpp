@@ -243,11 +243,7 @@ std::variant<CellSoup, RegularGrid> read_cells(const Node& node, Volume& volume,
 
 /// Moves the points; where the map mirrors, cells are turned.
 void place(const Transform& transform, const Node& node, TetMesh& mesh) {
-    for (Vec3& point : mesh.points) {
-        point = map_point(transform, point);
-        if (!(std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) <= kLargestCoordinate))
-            node.fail("its transform carries points beyond coordinates of 1e30");
-    }
+    if (!place(mesh.points, transform)) node.fail("its transform carries points beyond coordinates of 1e30");
     if (glm::determinant(transform.linear) < 0)
         for (Tetrahedron& cell : mesh.cells) std::swap(cell[2], cell[3]);
 }

@@ -23,6 +23,12 @@ TangentBasis tangent_basis(const Vec3& normal) {
             {b, sign + normal.y * normal.y * a, -normal.y}};
 }
 
+Vec2 recurrent_place(std::size_t index) {
+    const auto steps = static_cast<double>(index);
+    const Vec2 place = Vec2(0.5) + steps * Vec2(0.75487766624669276, 0.56984029099805327);
+    return place - glm::floor(place);
+}
+
 Vec2 disk_place(const Vec2& square) {
     const double x = 2 * square.x - 1, y = 2 * square.y - 1;
     if (x == 0 && y == 0) return Vec2(0);

@@ -72,6 +72,11 @@ struct TangentBasis {
 };
 TangentBasis tangent_basis(const Vec3& normal);
 
+/// Place `index` of a sequence that covers the unit square evenly however many are taken: an additive
+/// recurrence of the plane's golden ratio. Source: Roberts, The Unreasonable Effectiveness of Quasirandom
+/// Sequences, 2018.
+Vec2 recurrent_place(std::size_t index);
+
 /// A unit disk's place for one in the unit square, areas in proportion.
 /// Source: Shirley, Chiu, A Low Distortion Map Between Disk and Square, 1997.
 Vec2 disk_place(const Vec2& square);
