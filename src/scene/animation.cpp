@@ -28,6 +28,14 @@ bool shows_lights(const Scene& scene, const Json& changed) {
     return changed.contains("lights") && changed.at("lights").size() != scene.lights.size();
 }
 
+/// Whether any mesh does.
+bool depends_on_views(const Json& scene) {
+    if (!scene.contains("meshes")) return false;
+    const Json& meshes = scene.at("meshes");
+    return std::any_of(meshes.begin(), meshes.end(),
+                       [](const Json& mesh) { return mesh.contains("tolerance"); });
+}
+
 /// Reads what stands beside meshes, materials and background again, into a copy of `from`.
 Scene with_cameras(const Scene& from, const Json& json, const TextureReader& textures) {
     const std::string title = scene_title(from);
@@ -80,7 +88,8 @@ Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride
     apply_overrides(json, changes, title);
     Scene next;
     if (json.at("cameras").size() == scene.cameras.size() && same_part(still, json, "meshes") &&
-        same_part(still, json, "materials") && same_part(still, json, "background") &&
+        !depends_on_views(json) && same_part(still, json, "materials") &&
+        same_part(still, json, "background") &&
         (same_part(still, json, "lights") || !shows_lights(scene, json))) {
         if (const auto found = find_problem(json, scene_schema_json()))
             throw InputError(title, found->place, found->message);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/names.h"
 #include "json/json.h"
@@ -66,6 +67,20 @@ void read_meshes(const Node& root, Reading& reading) {
         if (used.count(i) == 0)
             reading.warn("/materials/" + std::to_string(i),
                          "the material '" + reading.scene.materials[i].name + "' is not used");
+}
+
+/// The terrains that wait for all else.
+void read_terrains_as_seen(const Node& root, Reading& reading) {
+    if (!root.has("meshes")) return;
+    const Node meshes = root["meshes"];
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (!meshes[i].has("tolerance")) continue;
+        if (!reading.film_moves) {
+            TRILENS_CHECK(reading.textures.film_moves, "a scene with a tolerance needs to know what is seen");
+            reading.film_moves = reading.textures.film_moves(reading.scene);
+        }
+        reading.scene.meshes[i] = read_mesh(meshes[i], i, reading);
+    }
 }
 
 /// The first material by which any surface shows what lies behind in part.
@@ -153,6 +168,7 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     read_lights(root, reading);
     add_light_objects(reading.scene);
     reading.scene.render = read_render(root);
+    read_terrains_as_seen(root, reading);
     warn_of_appearance(reading);
     return std::move(reading.scene);
 }

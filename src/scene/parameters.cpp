@@ -110,6 +110,15 @@ Scene scene_with(const Scene& scene, const SceneNumber& number) {
     return scene_with(scene, std::span(&number, 1));
 }
 
+namespace {
+
+/// Terrains with a tolerance are flat in scenes whose pictures are blank.
+std::vector<FilmMove> unseen(std::span<const FilmMoveQuery> queries) {
+    return std::vector<FilmMove>(queries.size());
+}
+
+}  // namespace
+
 Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers) {
     const Json root = checked_json(scene);
     std::vector<SceneOverride> changes;
@@ -130,7 +139,9 @@ Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers) {
                                             if (mesh.terrain && mesh.terrain->file == file)
                                                 return *mesh.terrain->heights;
                                         throw InputError(file, "", "is no terrain of the scene before");
-                                    }};
+                                    },
+                                    {},
+                                    [](const Scene&) { return unseen; }};
     return load_scene_text(scene.resolved, SceneSource(scene_title(scene), scene.folder), changes,
                            no_textures);
 }

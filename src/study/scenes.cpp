@@ -5,6 +5,7 @@
 #include "base/util/error.h"
 #include "base/util/names.h"
 #include "image/image_io.h"
+#include "render/project/film_moves.h"
 #include "scene/animation.h"
 #include "scene/load.h"
 #include "scene/read/reading.h"
@@ -17,7 +18,7 @@ TextureReader texture_reader() {
             [](std::span<const unsigned char> encoded, const std::string& name) {
                 return decode_texture(encoded, name);
             },
-            read_heights, draw_letters};
+            read_heights, draw_letters, film_moves};
 }
 
 bool is_image(const std::string& file) {

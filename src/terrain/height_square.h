@@ -6,11 +6,18 @@
 #include <vector>
 
 #include "base/image/height_grid.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 
 /// Of loops over rows.
 inline constexpr std::size_t kRowsPerTask = 16;
+
+/// Where the square's samples lie in the terrain's own frame.
+struct SampleSpacing {
+    Vec2 first{0}, step{1};  // x and z of sample (0, 0); of a step right and down
+    double height = 1;       // y of a value of 1
+};
 
 /// The heights at the square's lower corner, continued beyond the grid's last column and row by reflection in
 /// the points there, so that slopes go on. Samples without a height count as 0 and are marked.

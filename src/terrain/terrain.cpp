@@ -19,7 +19,7 @@ class Frame {
         : size_(size), columns_(heights.columns - 1), rows_(heights.rows - 1) {}
 
     SampleSpacing spacing() const {
-        return {{-0.5 * size_.x, -0.5 * size_.z}, {size_.x / columns_, size_.z / rows_}};
+        return {{-0.5 * size_.x, -0.5 * size_.z}, {size_.x / columns_, size_.z / rows_}, size_.y};
     }
     Vec3 point(const GridPlace& place) const {
         return {(place.column / columns_ - 0.5) * size_.x, place.height * size_.y,
@@ -116,7 +116,10 @@ TerrainMesh make_terrain(const HeightGrid& heights, const TerrainShape& shape,
     std::optional<SampleWorth> worth;
     KeptSample is_kept = [](int, int) { return true; };
     if (thinning) {
-        worth.emplace(square, thinning->rule, frame.spacing(), thinning->region);
+        std::optional<FilmScale> scale;
+        if (thinning->moves) scale.emplace(square, frame.spacing(), thinning->moves);
+        worth.emplace(square, thinning->rule, frame.spacing(),
+                      DetailWeights{thinning->region, scale ? &*scale : nullptr});
         is_kept = [&, threshold = thinning->threshold / shape.size.y](int x, int y) {
             return static_cast<double>(worth->at(x, y)) > threshold;
         };

@@ -22,8 +22,9 @@ struct TerrainShape {
 
 struct Thinning {
     ThinningRule rule = ThinningRule::kBound;
-    double threshold = 0;  // in y; what matters no more goes
+    double threshold = 0;  // in y, or in pixels where `moves` is given; what matters no more goes
     std::optional<InterestRegion> region;
+    FilmMoves moves = {};  // of places of the terrain's own frame
 };
 
 /// In its own frame: x to the right of the grid's rows, z down its columns, both from the middle; y up.

@@ -10,33 +10,39 @@
 namespace trilens {
 namespace {
 
+/// What an infinite scale counts as, so that a detail of nothing is worth nothing.
+constexpr double kMostScale = 1e25;
+
 float rounded_up(double value) {
     const auto near = static_cast<float>(value);
     return static_cast<double>(near) < value ? std::nextafter(near, std::numeric_limits<float>::infinity())
                                              : near;
 }
 
-/// exp(-|R p|^2), R the map that turns the region into the unit disk.
+/// exp(-|R p|^2), R the map that turns the region into the unit disk, times the scale.
 class Weights {
   public:
-    Weights(const SampleSpacing& spacing, const std::optional<InterestRegion>& region)
-        : spacing_(spacing), region_(region) {
-        if (!region) return;
-        const double angle = region->turn * std::numbers::pi / 180;
+    Weights(const SampleSpacing& spacing, const DetailWeights& weights)
+        : spacing_(spacing), region_(weights.region), scale_(weights.scale) {
+        if (!region_) return;
+        const double angle = region_->turn * std::numbers::pi / 180;
         cos_ = std::cos(angle);
         sin_ = std::sin(angle);
     }
-    double at(int x, int y) const {
-        if (!region_) return 1;
+    /// Of a detail that is seen less than `half` samples around, both coordinates multiples of it.
+    double at(int x, int y, int half) const {
+        const double pixels = scale_ ? std::min(scale_->most_around(x, y, half), kMostScale) : 1;
+        if (!region_) return pixels;
         const Vec2 p = spacing_.first + Vec2(x, y) * spacing_.step - region_->center;
         const Vec2 q((cos_ * p.x + sin_ * p.y) / region_->radii.x,
                      (cos_ * p.y - sin_ * p.x) / region_->radii.y);
-        return std::exp(-dot(q, q));
+        return pixels * std::exp(-dot(q, q));
     }
 
   private:
     const SampleSpacing& spacing_;
     const std::optional<InterestRegion>& region_;
+    const FilmScale* scale_;
     double cos_ = 1, sin_ = 0;
 };
 
@@ -146,15 +152,15 @@ void SampleWorth::gather(const Own& own) {
 }
 
 SampleWorth::SampleWorth(const HeightSquare& heights, ThinningRule rule, const SampleSpacing& spacing,
-                         const std::optional<InterestRegion>& region)
+                         const DetailWeights& by)
     : heights_(heights) {
     worth_.assign(static_cast<std::size_t>(heights.side()) * static_cast<std::size_t>(heights.side()), 0);
-    const Weights weights(spacing, region);
+    const Weights weights(spacing, by);
     if (rule == ThinningRule::kBound) {
         gather([&](int x, int y, int m, float most) {
             const int half = 1 << m;
             if (!reaches_grid(heights, x, y, half)) return most;
-            return rounded_up(weights.at(x, y) * std::fabs(bisection_detail(heights, x, y, half)) +
+            return rounded_up(weights.at(x, y, half) * std::fabs(bisection_detail(heights, x, y, half)) +
                               static_cast<double>(most));
         });
         return;
@@ -167,7 +173,7 @@ SampleWorth::SampleWorth(const HeightSquare& heights, ThinningRule rule, const S
         for (const auto& [dx, dy] : {std::array{0, 0}, {-step, 0}, {step, 0}, {0, -step}, {0, step}}) {
             const int i = x + dx, j = y + dy;
             if (i < 0 || j < 0 || i >= heights.side() || j >= heights.side()) continue;
-            const double signal = weights.at(i, j) * signals.at(i, j, m);
+            const double signal = weights.at(i, j, step) * signals.at(i, j, m);
             energy += signal * signal;
         }
         return std::max(most, rounded_up(std::sqrt(energy)));

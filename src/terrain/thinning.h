@@ -9,6 +9,7 @@
 
 #include "base/math/vec.h"
 #include "base/util/names.h"
+#include "terrain/film_scale.h"
 #include "terrain/height_square.h"
 
 namespace trilens {
@@ -35,20 +36,21 @@ struct InterestRegion {
     double turn = 0;  // degrees from x towards z of the first axis
 };
 
-/// Where the square's samples lie.
-struct SampleSpacing {
-    Vec2 first{0}, step{1};  // x and z of sample (0, 0); of a step right and down
+/// What details count by: the product of both, 1 where there are none.
+struct DetailWeights {
+    std::optional<InterestRegion> region;
+    const FilmScale* scale = nullptr;  // must outlive it
 };
 
 /// How much each sample of the square matters, in heights: a triangulation keeps those that matter more than
 /// its threshold, and with every sample it keeps those that its triangles' corners rest on, for none matters
 /// less than what rests on it. Of kBound it is, where weights are 1, a bound of how far the surface moves, at
-/// any point, where the sample and all that rests on it go. What touches a missing sample matters without
-/// end.
+/// any point, where the sample and all that rests on it go; weighted by a scale it is one in pixels. What
+/// touches a missing sample matters without end.
 class SampleWorth {
   public:
     SampleWorth(const HeightSquare& heights, ThinningRule rule, const SampleSpacing& spacing,
-                const std::optional<InterestRegion>& region);
+                const DetailWeights& weights);
 
     float at(int x, int y) const { return worth_[heights_.index(x, y)]; }
 

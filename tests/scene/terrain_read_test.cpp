@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/util/error.h"
+#include "scene/animation.h"
 #include "scene/info.h"
 #include "scene/parameters.h"
 #include "scene/scene_text.h"
@@ -22,6 +23,16 @@ std::string terrain_scene(const std::string& keys, const std::string& role = "te
            role + "\", " + keys + "}]}";
 }
 
+/// As if all cameras looked from above, and a unit were a hundredth of the film.
+FilmMoves moves_of(int width) {
+    return [width](std::span<const FilmMoveQuery> queries) {
+        std::vector<FilmMove> moves;
+        for (const FilmMoveQuery& query : queries)
+            moves.push_back({0.01 * width * length(query.along), true, true});
+        return moves;
+    };
+}
+
 /// A file that is there, and a reader that says what is in it.
 struct HeightsInFile {
     explicit HeightsInFile(HeightGrid field) : heights(std::move(field)) {
@@ -34,6 +45,7 @@ struct HeightsInFile {
     Scene load(const std::string& json) const {
         TextureReader reader = white_textures();
         reader.heights_from_file = [this](const std::string&) { return heights; };
+        reader.film_moves = [](const Scene& scene) { return moves_of(scene.film.width); };
         return load_scene_text(json, SceneSource("room.json", ""), {}, reader);
     }
     std::string refusal(const std::string& json) const {
@@ -111,6 +123,37 @@ TEST_CASE("a terrain is thinned as its scene says", "[scene][terrain]") {
     CHECK(region.terrain->greatest_error > 0.1);
 }
 
+TEST_CASE("a terrain's tolerance is its heights' error on the film of its scene", "[scene][terrain]") {
+    const HeightsInFile file(mountains(65, 65));
+    const auto triangles = [&](const std::string& more, const char* film) {
+        std::string json = terrain_scene(file.keys(more));
+        json.insert(1, film);
+        return make_scene_info(file.load(json)).meshes[0].triangles;
+    };
+    const char *usual = R"("film": {"width": 100, "height": 100}, )",
+               *large = R"("film": {"width": 1000, "height": 100}, )";
+    const std::size_t by_height = triangles(R"(, "heightError": 0.1)", usual);
+    CHECK(triangles(R"(, "tolerance": 0.1)", usual) == by_height);
+    CHECK(triangles(R"(, "tolerance": 1)", large) == by_height);
+    CHECK(triangles(R"(, "tolerance": 0.1)", large) > by_height);
+    // Pixels go by what the transform makes of a height.
+    CHECK(triangles(R"(, "tolerance": 0.3, "transform": {"scale": [1, 3, 1]})", usual) == by_height);
+    CHECK(triangles(R"(, "tolerance": 0.1, "thinning": "haar")", usual) ==
+          triangles(R"(, "heightError": 0.1, "thinning": "haar")", usual));
+    CHECK(triangles(R"(, "tolerance": 0.1, "region": {"radii": [1, 1]})", usual) < by_height);
+}
+
+TEST_CASE("a terrain with a tolerance is thinned anew where its film changes", "[scene][terrain]") {
+    const HeightsInFile file(mountains(65, 65));
+    const Scene scene = file.load(terrain_scene(file.keys(R"(, "tolerance": 1)")));
+    const SceneOverride larger{"/film/width", "6400"};
+    TextureReader reader = white_textures();
+    reader.heights_from_file = [&](const std::string&) { return file.heights; };
+    reader.film_moves = [](const Scene& of) { return moves_of(of.film.width); };
+    CHECK(load_frame(scene, 0, std::span(&larger, 1), reader).meshes[0].object.triangles.size() >
+          scene.meshes[0].object.triangles.size());
+}
+
 TEST_CASE("a terrain keeps its heights where a number of its scene changes", "[scene][terrain]") {
     const HeightsInFile file(mountains(33, 33));
     const Scene scene = file.load(terrain_scene(file.keys(R"(, "heightError": 0.1)")));
@@ -134,6 +177,11 @@ TEST_CASE("terrains that cannot be are refused with their place", "[scene][terra
     CHECK(
         contains(file.refusal(terrain_scene(file.keys(R"(, "heightError": -1)"))), "/meshes/0/heightError"));
     CHECK(contains(file.refusal(terrain_scene(file.keys(R"(, "heightErrors": 1)"))), "heightError"));
+    CHECK(contains(file.refusal(terrain_scene(file.keys(R"(, "tolerance": 0)"))), "/meshes/0/tolerance"));
+    CHECK(contains(file.refusal(terrain_scene(file.keys(R"(, "tolerance": 1, "heightError": 1)"))),
+                   "'heightError' is no key of a terrain with a tolerance"));
+    CHECK(contains(file.refusal(terrain_scene(file.keys(R"(, "tolerance": 1, "fit": {"size": 1})"))),
+                   "'fit' is no key of a terrain with a tolerance"));
     CHECK(
         contains(file.refusal(terrain_scene(file.keys(R"(, "heightError": 1, "region": {"radii": [1, 0]})"))),
                  "/meshes/0/region/radii/1"));

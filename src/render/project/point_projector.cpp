@@ -223,6 +223,10 @@ void PointProjector::add_direct(const ProjectedPoint& asked, PointProjection& re
                     (Vec3(row) - image.pixel[axis] * Vec3(camera_.linear->screen_w)) *
                     ((asked.is_direction ? reach_ : 1) / depth);
             }
+        } else if (const auto place = film_place(camera_, point, image.pixel)) {
+            image.has_derivative = true;
+            for (std::size_t axis = 0; axis < 2; ++axis)
+                image.derivative[axis] = place->slope[axis] * (asked.is_direction ? reach_ : 1);
         }
         result.images.push_back(image);
     }

@@ -25,6 +25,8 @@ class PointProjector {
   public:
     PointProjector(const World& world, const ProjectRequest& request);
 
+    const CameraRays& camera() const { return camera_; }
+
     /// Adds to result[p] the images of points[p], for each p of `some`; points that lie close together take
     /// less time.
     void project(std::span<const ProjectedPoint> points, std::span<const std::size_t> some,

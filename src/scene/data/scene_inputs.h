@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/description/film_move.h"
 #include "base/description/marks.h"
 #include "base/description/material.h"
 #include "base/image/height_grid.h"
@@ -34,7 +35,9 @@ struct ImportOptions {
     bool empty() const { return optics.empty() && !time && animation.empty(); }
 };
 
-// How the scene room gets pixels without knowing the image room.
+// How the scene room gets pixels without knowing the image room, and what is seen without knowing cameras.
+
+struct Scene;
 
 /// Returns a linear Rec.709 picture, or the numbers of one, or throws an InputError that names the file.
 /// from_memory reads a picture held in memory (GLB).
@@ -45,6 +48,8 @@ struct TextureReader {
         from_memory;
     std::function<HeightGrid(const std::string& file)> heights_from_file = {};
     std::function<TextMask(const TextStyle& style)> letters = {};  // none: labels have no letters
+    /// Of all cameras of a scene that is read but for terrains with a tolerance, its optics as they are.
+    std::function<FilmMoves(const Scene& scene)> film_moves = {};
 };
 
 }  // namespace trilens

@@ -116,13 +116,16 @@ constexpr const char* kMeshRules = R"json({
   "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] }, { "required": ["heights"] }, { "required": ["patches"] } ],
   "dependencies": {
     "heights": ["size"], "size": ["heights"], "noData": ["heights"], "heightError": ["heights"],
-    "thinning": ["heightError"], "region": ["heightError"],
+    "tolerance": ["heights"],
     "points": ["faceVertexCounts", "faceVertexIndices"], "faceVertexCounts": ["points"], "faceVertexIndices": ["points"],
     "uvIndices": ["uvs"], "creaseIndices": ["creaseSharpnesses"], "creaseSharpnesses": ["creaseIndices"],
     "colors": ["points"], "vertexColors": ["file"], "node": ["file"], "parts": ["node"], "clip": ["file"], "time": ["clip"],
     "creaseLengths": ["creaseIndices"], "cornerIndices": ["cornerSharpnesses"], "cornerSharpnesses": ["cornerIndices"]
   },
   "allOf": [
+    { "if": { "required": ["tolerance"] },
+      "then": { "title": "a terrain with a tolerance", "properties": { "heightError": false, "fit": false } },
+      "else": { "title": "a terrain without a tolerance", "dependencies": { "thinning": ["heightError"], "region": ["heightError"] } } },
     { "if": { "properties": { "role": { "const": "optic" } } },
       "then": { "title": "an optic", "required": ["material"], "properties": { "heights": false, "bakedLight": false } } },
     { "if": { "properties": { "role": { "const": "terrain" } } },

@@ -191,6 +191,7 @@ PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, Reading& reading)
 }
 
 void read_object(const Node& node, Mesh& mesh, Reading& reading) {
+    if (waits_for_views(node, reading)) return;
     if (mesh.material != kNone) {
         const Material& material = reading.scene.materials[mesh.material];
         const bool is_mirror = material.metallic_factor == 1 && material.is_matt();

@@ -1,4 +1,5 @@
 // Objects made of heights: the keys of terrains, and their triangles.
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -26,7 +27,12 @@ const std::vector<Field<TerrainSettings>>& terrain_fields() {
             .without_default(),
         setting("heightError", &TerrainSettings::height_error, ref("notNegative"),
                 "terrain: how far along y, before transform, triangles may be from those of all samples; "
-                "without it, all samples are kept.")
+                "without it or a tolerance, all samples are kept.")
+            .without_default(),
+        setting("tolerance", &TerrainSettings::tolerance, ref("positive"),
+                "terrain: how many pixels its triangles may be from those of all samples in the pictures of "
+                "the scene's cameras, directly and by optics; instead of heightError, of which in pixels "
+                "thinning and region then speak.")
             .without_default(),
         choice("thinning", &TerrainSettings::thinning,
                "terrain: bound: nothing is off by more than heightError, by the sum of linear wavelets; "
@@ -78,30 +84,54 @@ std::shared_ptr<const HeightGrid> read_heights(const Node& node, Terrain& terrai
     }
 }
 
-TerrainMesh triangles_of(const Node& node, const TerrainSettings& settings, const HeightGrid& heights) {
+/// Of places of a mesh's own frame.
+FilmMoves moves_of(const Transform& world_from_own, const FilmMoves& moves) {
+    double stretch = 0;  // no direction is made longer by more: the root of the sum of squares
+    for (int k = 0; k < 3; ++k) stretch += dot(world_from_own.linear[k], world_from_own.linear[k]);
+    stretch = std::sqrt(stretch);
+    return [=](std::span<const FilmMoveQuery> own) {
+        std::vector<FilmMoveQuery> queries;
+        for (const auto& [place, along, reach] : own)
+            queries.push_back(
+                {map_point(world_from_own, place), world_from_own.linear * along, stretch * reach});
+        return moves(queries);
+    };
+}
+
+TerrainMesh triangles_of(const Node& node, const TerrainSettings& settings, const HeightGrid& heights,
+                         const Reading& reading) {
     TerrainShape shape{settings.size, {}};
     if (node.has("noData")) shape.no_data = settings.no_data;
     std::optional<Thinning> thinning;
-    if (node.has("heightError")) {
-        thinning = Thinning{settings.thinning, settings.height_error, {}};
+    const char* limit = node.has("tolerance") ? "tolerance" : "heightError";
+    if (node.has(limit)) {
+        thinning = Thinning{settings.thinning, settings.height_error, {}, {}};
+        if (node.has("tolerance")) {
+            thinning->threshold = settings.tolerance;
+            thinning->moves = moves_of(read_transform(node), reading.film_moves);
+        }
         if (node.has("region")) read_fields(node["region"], region_fields(), thinning->region.emplace());
     }
     try {
         return make_terrain(heights, shape, thinning);
     } catch (const std::length_error& error) {
-        (thinning ? node["heightError"] : node["heights"])
-            .fail(std::string("makes ") + error.what() + ": give a larger heightError");
+        (thinning ? node[limit] : node["heights"])
+            .fail(std::string("makes ") + error.what() + ": give a larger " + limit);
     }
 }
 
 }  // namespace
+
+bool waits_for_views(const Node& mesh, const Reading& reading) {
+    return mesh.has("tolerance") && !reading.film_moves;
+}
 
 void read_terrain(const Node& node, Mesh& mesh, Reading& reading) {
     TerrainSettings settings;
     read_fields(node, terrain_fields(), settings);
     auto terrain = std::make_shared<Terrain>();
     terrain->heights = read_heights(node["heights"], *terrain, reading);
-    TerrainMesh made = triangles_of(node, settings, *terrain->heights);
+    TerrainMesh made = triangles_of(node, settings, *terrain->heights, reading);
     terrain->missing_heights = made.missing_heights;
     terrain->whole_triangles = made.whole_triangles;
     terrain->greatest_error = made.greatest_error;

@@ -37,6 +37,7 @@ struct Reading {
     Scene scene;
     std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
     std::map<std::string, std::shared_ptr<const GltfModel>> gltf_of_path;
+    FilmMoves film_moves;  // once all but the terrains that ask for them are read
     std::size_t named_materials =
         0;  // the scene file's own come first in scene.materials; those of files follow
 
@@ -60,7 +61,7 @@ struct TerrainSettings {
     std::string heights;
     Vec3 size{1};
     double no_data = 0;
-    double height_error = 0;
+    double height_error = 0, tolerance = 0;
     ThinningRule thinning = ThinningRule::kBound;
 };
 
@@ -116,6 +117,8 @@ PolygonMesh read_object_primitive(const Node& primitive);
 Transform read_transform(const Node& mesh);
 /// Moves a mesh as its `transform` and `fit` say. Throws InputError where points leave the range.
 void place_mesh(PolygonMesh& polygons, const Node& mesh);
+/// Whether the triangles of a terrain depend on how it is seen, and that is not known yet.
+bool waits_for_views(const Node& mesh, const Reading& reading);
 /// The triangles of an object that has heights, without materials; warns of holes.
 void read_terrain(const Node& node, Mesh& mesh, Reading& reading);
 /// The patches of an optic as its cage; warns of glass whose patches do not close.
