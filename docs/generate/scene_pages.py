@@ -117,7 +117,7 @@ def field_table(rows):
 
 # What stands on a page of its own; everything else is on the page of the scene file.
 CAMERA_PARTS = ("camera", "lookAt", "placedRay", "view")
-SURFACE_PARTS = ("mesh", "primitive", "normals", "transform", "rotation", "fit")
+SURFACE_PARTS = ("mesh", "primitive", "displacement", "normals", "transform", "rotation", "fit")
 
 
 def section(schema, name, level="##", text=""):
@@ -265,6 +265,6 @@ def write_scene_pages(program, out):
         title = definition.get("title", name)
         pages += (f"\n## {title[:1].upper() + title[1:]}\n\n{definition.get('description', '')}\n"
                   + kinds_of(schema, name, drawn))
-    for name in ("transform", "rotation", "fit"):
+    for name in ("displacement", "transform", "rotation", "fit"):
         pages += section(schema, name)
     write("scene-surfaces.md", pages)

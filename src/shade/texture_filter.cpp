@@ -15,42 +15,6 @@ constexpr double kMostAnisotropy = 32;  // how often a footprint may be as long 
 constexpr double kPointTexels = 0.5;    // shorter sides are points
 constexpr double kMostTexels = 1e9;     // longer sides than this are as good as infinite
 
-/// As std::floor; a call costs more than all the rest of a look-up.
-double floor_of(double x) {
-    if (!(std::fabs(x) < 0x1p52)) return std::floor(x);
-    const double whole = static_cast<double>(static_cast<long>(x));
-    return whole > x ? whole - 1 : whole;
-}
-
-/// The texel that stands for one beyond the picture's edge.
-int wrapped(long index, int size, Wrap wrap) {
-    if (index >= 0 && index < size) return static_cast<int>(index);  // mostly, and a division is slow
-    if (wrap == Wrap::kClampToEdge) return index < 0 ? 0 : size - 1;
-    const long period = wrap == Wrap::kMirroredRepeat ? 2L * size : size;
-    const long rest = (index % period + period) % period;
-    return static_cast<int>(rest < size ? rest : period - 1 - rest);
-}
-
-/// A coordinate moved by whole periods, so that texels far away stay within integers.
-double reduced(double x, Wrap wrap) {
-    switch (wrap) {
-        case Wrap::kRepeat:
-            return x - floor_of(x);
-        case Wrap::kMirroredRepeat:
-            return x - 2 * floor_of(x / 2);
-        case Wrap::kClampToEdge:
-            return std::clamp(x, -1.0, 2.0);
-    }
-    return x;
-}
-
-Vec3 texel(const Texture& texture, int x, int y) {
-    const float* rgb =
-        &texture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) +
-                          static_cast<std::size_t>(x))];
-    return {rgb[0], rgb[1], rgb[2]};
-}
-
 /// What part a coarser texel has of each finer one along an axis: at most three, for sides that are odd.
 struct Taps {
     int first = 0, count = 0;
@@ -93,7 +57,7 @@ Texture halved(const Texture& fine) {
                     for (int i = 0; i < across[x].count; ++i)
                         sum += down[y].share[static_cast<std::size_t>(j)] *
                                across[x].share[static_cast<std::size_t>(i)] *
-                               texel(fine, across[x].first + i, down[y].first + j);
+                               texel_at(fine, across[x].first + i, down[y].first + j);
                 for (int c = 0; c < 3; ++c)
                     coarse.rgb[3 * (y * width + x) + static_cast<std::size_t>(c)] =
                         static_cast<float>(sum[c]);
@@ -131,36 +95,6 @@ const Texture& MipMap::level(std::size_t level) const {
             levels->push_back(halved(l == 1 ? *texture_ : levels->back()));
         return levels;
     })[level - 1];
-}
-
-namespace {
-
-/// Between the four texels around a place; at(texture, x, y): what of a texel is asked for.
-template <typename At>
-auto bilinear(const Texture& texture, const TextureSampler& wrap, const Vec2& place, const At& at) {
-    const double x = reduced(place.x, wrap.wrap_s) * texture.width - 0.5,
-                 y = (1 - reduced(place.y, wrap.wrap_t)) * texture.height - 0.5;
-    const double left = floor_of(x), top = floor_of(y);
-    const double fx = x - left, fy = y - top;
-    const auto column = [&](long i) { return wrapped(i, texture.width, wrap.wrap_s); };
-    const auto row = [&](long j) { return wrapped(j, texture.height, wrap.wrap_t); };
-    const int x0 = column(static_cast<long>(left)), x1 = column(static_cast<long>(left) + 1);
-    const int y0 = row(static_cast<long>(top)), y1 = row(static_cast<long>(top) + 1);
-    return (1 - fy) * ((1 - fx) * at(texture, x0, y0) + fx * at(texture, x1, y0)) +
-           fy * ((1 - fx) * at(texture, x0, y1) + fx * at(texture, x1, y1));
-}
-
-}  // namespace
-
-Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place) {
-    return bilinear(texture, wrap, place, texel);
-}
-
-double lookup_alpha(const Texture& texture, const TextureSampler& wrap, const Vec2& place) {
-    return bilinear(texture, wrap, place, [](const Texture& of, int x, int y) {
-        return static_cast<double>(of.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.width) +
-                                            static_cast<std::size_t>(x)]);
-    });
 }
 
 Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/description/material.h"
+#include "base/image/texture_lookup.h"
 #include "base/math/vec.h"
 #include "base/util/parallel.h"
 
@@ -33,12 +34,6 @@ class MipMap {
 
 /// What a look-up stands for: a parallelogram about its place, by its two sides.
 using Footprint = std::array<Vec2, 2>;
-
-/// Bilinear look-up at a place of the picture: x to the right, y upward, both 0 to 1 from its bottom left.
-Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place);
-
-/// The same of its alpha; the picture has some.
-double lookup_alpha(const Texture& texture, const TextureSampler& wrap, const Vec2& place);
 
 /// The mean of the picture over a footprint, whose sides are in units of `place`: the rectangle that the
 /// pixel's square becomes when it is turned until its image has right angles, seen at the coarsest level

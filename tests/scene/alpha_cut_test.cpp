@@ -4,7 +4,7 @@
 #include <random>
 
 #include "scene/data/alpha_cut.h"
-#include "scene/data/weld.h"
+#include "scene/meshes/weld.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,5 +1,5 @@
 // Normals of points out of the faces around them, and which normals light an object.
-#include "scene/data/vertex_normals.h"
+#include "scene/meshes/vertex_normals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/image/texture_lookup.h"
+
 namespace trilens {
 namespace {
 
@@ -12,13 +14,6 @@ constexpr double kMostCells = 1 << 22;  // of one triangle
 
 /// A place on the picture in half texels from the first texel's middle; y downward.
 using GridPlace = Vec2;
-
-int wrapped(long long index, int size, Wrap wrap) {
-    if (wrap == Wrap::kClampToEdge) return static_cast<int>(std::clamp(index, 0LL, size - 1LL));
-    const long long period = wrap == Wrap::kRepeat ? size : 2LL * size;
-    const long long in = ((index % period) + period) % period;
-    return static_cast<int>(in < size ? in : period - 1 - in);
-}
 
 /// How much more opaque the picture is than the cutoff.
 class Opacity {
@@ -40,8 +35,8 @@ class Opacity {
 
   private:
     double texel(long long x, long long y) const {
-        const auto column = static_cast<std::size_t>(wrapped(x, texture_.width, sampler_.wrap_s)),
-                   row = static_cast<std::size_t>(wrapped(y, texture_.height, sampler_.wrap_t));
+        const auto column = static_cast<std::size_t>(wrapped_texel(x, texture_.width, sampler_.wrap_s)),
+                   row = static_cast<std::size_t>(wrapped_texel(y, texture_.height, sampler_.wrap_t));
         return static_cast<double>(texture_.alpha[row * static_cast<std::size_t>(texture_.width) + column]);
     }
 

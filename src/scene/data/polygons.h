@@ -63,6 +63,12 @@ inline constexpr double kSimilar = 1e-9;  // relative; a matrix written with ten
 // A polygon mesh as files give it, in its own frame, and what becomes of it: a placed cage or an object's
 // triangles, by ear clipping.
 
+/// Heights over a mesh by its uv: `offset` + `scale` times the luminance of a picture of numbers.
+struct HeightMap {
+    PlacedTexture texture;  // without a picture there are no heights
+    double scale = 1, offset = 0;
+};
+
 /// Cage fields with what only objects need. Indices are in range.
 struct PolygonMesh {
     Cage cage;
@@ -73,6 +79,7 @@ struct PolygonMesh {
     std::vector<Vec3> normals;        // any length; zero: none, take the triangle's own
     std::vector<Id> face_material;    // per face an index into `materials`, or kNone; empty: none at all
     std::vector<Material> materials;  // the file's own
+    std::vector<HeightMap> heights;   // of materials that move the mesh's points, one per entry; or empty
     bool is_triangle_soup = false;    // a point may stand there several times, as in glTF
 };
 

@@ -95,7 +95,8 @@ void add_shape(const SpherePrimitive& sphere, const ObjectPrimitive& p, PolygonM
     const AxisFrame frame(p);
     const Patch patch = [&](double u, double v) {
         const double latitude = (v - 0.5) * std::numbers::pi;
-        const Vec3 normal = std::cos(latitude) * frame.around(u) + std::sin(latitude) * frame.axis;
+        const double out = v > 0 && v < 1 ? std::cos(latitude) : 0;  // a pole is one point to the last bit
+        const Vec3 normal = out * frame.around(u) + std::sin(latitude) * frame.axis;
         return SurfaceCorner{p.center + sphere.radius * normal, normal};
     };
     add_patch(patch, p.segments, (p.segments + 1) / 2, {true, true}, mesh);

@@ -56,6 +56,9 @@ class MtlReader {
             material_->bump_scale = 1;
             material_->bump = read_map(line, words);
             material_->is_normals = words[0] == "norm";
+        } else if (words[0] == "disp") {
+            material_->displacement_base = 0, material_->displacement_gain = 1;
+            material_->displacement = read_map(line, words);
         } else if (words[0] == "illum" && words.size() == 2 && words[1].size() == 1 && words[1] <= "2") {
             has_highlight_ = words[1] == "2";
         } else if (!is_opaque(words)) {
@@ -128,8 +131,8 @@ class MtlReader {
         return *value;
     }
 
-    /// Takes -bm of a bump map and steps over other options; the rest of the line is the picture, whose name
-    /// may hold spaces.
+    /// Takes -bm of a bump map and -mm of a displacement map, and steps over other options; the rest of the
+    /// line is the picture, whose name may hold spaces.
     std::string read_map(std::string_view line, const std::vector<std::string_view>& words) {
         const std::string key(words[0]);
         std::size_t last = 0;  // word before the picture's name
@@ -139,8 +142,10 @@ class MtlReader {
                                               [&](const MapOption& known) { return known.name == word; });
             if (option == std::end(kMapOptions)) break;
             if (last + 2 >= words.size()) fail("'" + std::string(word) + "' of " + key + " needs a value");
-            if (word == "-bm" && key != "map_Kd")
-                material_->bump_scale = read_bump_scale(words[last + 2]);
+            if (word == "-bm" && key != "map_Kd" && key != "disp")
+                material_->bump_scale = read_number_of(word, words[last + 2]);
+            else if (word == "-mm" && key == "disp")
+                read_base_and_gain(words, last + 2);
             else
                 ignore(key + " " + std::string(word));
             last += 2;
@@ -155,11 +160,18 @@ class MtlReader {
         return picture;
     }
 
-    double read_bump_scale(std::string_view word) const {
+    double read_number_of(std::string_view option, std::string_view word) const {
         const std::optional<double> value = parse_number(word);
         if (!value || !(std::fabs(*value) <= kLargestCoordinate))
-            fail("the -bm of material '" + material_->name + "': '" + std::string(word) + "' is no number");
+            fail("the " + std::string(option) + " of material '" + material_->name + "': '" +
+                 std::string(word) + "' is no number");
         return *value;
+    }
+
+    void read_base_and_gain(const std::vector<std::string_view>& words, std::size_t first) {
+        material_->displacement_base = read_number_of("-mm", words[first]);
+        if (first + 1 < words.size() && parse_number(words[first + 1]))
+            material_->displacement_gain = read_number_of("-mm", words[first + 1]);
     }
 
     const std::string& file_;

@@ -29,13 +29,15 @@ ObjFile parse_obj(const std::string& bytes, const std::string& file);
 /// What trilens takes from a material of an MTL file.
 struct MtlMaterial {
     std::string name;
-    Vec3 diffuse{0};          // Kd, taken as linear; 0.6 where map_Kd stands without Kd
-    std::string texture;      // map_Kd, as written; may be empty
-    Vec3 specular{0};         // Ks; 0 where illum says that there is no highlight
-    double exponent = 0;      // Ns, of the highlight
-    std::string bump;         // map_Bump or bump, heights, or norm, normals; as written; may be empty
-    bool is_normals = false;  // `bump` is norm's
-    double bump_scale = 1;    // its -bm
+    Vec3 diffuse{0};           // Kd, taken as linear; 0.6 where map_Kd stands without Kd
+    std::string texture;       // map_Kd, as written; may be empty
+    Vec3 specular{0};          // Ks; 0 where illum says that there is no highlight
+    double exponent = 0;       // Ns, of the highlight
+    std::string bump;          // map_Bump or bump, heights, or norm, normals; as written; may be empty
+    bool is_normals = false;   // `bump` is norm's
+    double bump_scale = 1;     // its -bm
+    std::string displacement;  // disp, heights, as written; may be empty
+    double displacement_base = 0, displacement_gain = 1;  // its -mm: base + gain times the picture
 };
 
 /// An MTL file; without a newmtl line it has no materials.
@@ -45,10 +47,10 @@ struct MtlFile {
 };
 
 /// Parses an MTL file, UTF-8 with or without its byte order mark: newmtl, Kd with 3 numbers (or one for all
-/// three), map_Kd, Ks, Ns, map_Bump (or bump, or norm) with -bm, and illum 0 to 2 (below 2: no highlight).
-/// One warning names every other key, and every other option of a map, with the line where it stands first; d
-/// 1 and Tr 0 say what is drawn anyway and are not named. Throws InputError(file, "line n") for colours and
-/// numbers that are none and for an option of a map without its value.
+/// three), map_Kd, Ks, Ns, map_Bump (or bump, or norm) with -bm, disp with -mm, and illum 0 to 2 (below 2: no
+/// highlight). One warning names every other key, and every other option of a map, with the line where it
+/// stands first; d 1 and Tr 0 say what is drawn anyway and are not named. Throws InputError(file, "line n")
+/// for colours and numbers that are none and for an option of a map without its value.
 MtlFile parse_mtl(const std::string& bytes, const std::string& file);
 
 }  // namespace trilens

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/util/names.h"
-#include "scene/data/vertex_normals.h"
+#include "scene/meshes/vertex_normals.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -106,6 +106,7 @@ MeshFields all_mesh_fields() {
     };
     add_keys(subdivision_fields(), fields);
     add_keys(terrain_fields(), fields);
+    fields.push_back(part<Mesh>("displacement", ref("displacement")));
     fields.push_back(part<Mesh>("normals", ref("normals")));
     fields.push_back(part<Mesh>("bakedLight", ref("bakedLight")));
     return fields;
@@ -131,11 +132,11 @@ constexpr const char* kMeshRules = R"json({
     { "if": { "properties": { "role": { "const": "terrain" } } },
       "then": { "title": "a terrain", "required": ["heights"] } },
     { "if": { "required": ["heights"] },
-      "then": { "title": "a terrain", "properties": { "role": { "const": "terrain" }, "uvs": false, "uvIndices": false, "uvs1": false } } },
+      "then": { "title": "a terrain", "properties": { "role": { "const": "terrain" }, "displacement": false, "uvs": false, "uvIndices": false, "uvs1": false } } },
     { "if": { "required": ["file"] },
       "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
     { "if": { "required": ["patches"] },
-      "then": { "title": "a mesh of patches", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
+      "then": { "title": "a mesh of patches", "properties": { "displacement": false, "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,
         "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } },
     { "if": { "required": ["primitive"] },
       "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "uvs1": false, "subdivisionScheme": false, "interpolateBoundary": false,

@@ -8,8 +8,8 @@
 #include "base/util/names.h"
 #include "scene/data/alpha_cut.h"
 #include "scene/data/cage_diagnostics.h"
-#include "scene/data/vertex_normals.h"
-#include "scene/data/weld.h"
+#include "scene/meshes/vertex_normals.h"
+#include "scene/meshes/weld.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -83,6 +83,8 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     check_optic_material(node, mesh.material, reading);
     if (node.has("primitive")) {
         if (node.has("fit")) node["fit"].fail("an optic's primitive has its own center and size");
+        if (node.has("displacement"))
+            node["displacement"].fail("an optic's primitive is exact: heights move the points of a cage");
         mesh.primitive = read_primitive(node["primitive"], read_transform(node), node);
         mesh.maps_normals = reading.scene.materials[mesh.material].normal_texture.picture != nullptr;
         return;
@@ -105,6 +107,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
         join_quads(polygons);
     if (polygons.cage.scheme == SubdivisionScheme::kUnsubdivided) cut_into_triangles(polygons);
     check_scheme(node, polygons.cage);
+    read_displacement(node, polygons, reading);
     place_mesh(polygons, node);
     check_far_points(node, polygons.cage);
     read_optic_uvs(node, polygons, mesh, reading);
@@ -173,8 +176,10 @@ ObjectShading read_shading(const Node& node) {
 
 namespace {
 
-/// In the world, with the normals that they are lit by.
-PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, Reading& reading) {
+/// In the world, with the normals that they are lit by. Counts the faces that cross themselves where they are
+/// triangles already.
+PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, std::size_t& uncovered_faces,
+                                 Reading& reading) {
     if (node.has("patches")) {
         PolygonMesh polygons = read_object_patches(node, mesh);
         set_shading(polygons, read_shading(node));
@@ -185,6 +190,8 @@ PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, Reading& reading)
                                                    : read_inline_polygons(node);
     if (node.has("vertexColors") && !node.json.at("vertexColors").get<bool>()) polygons.colors.clear();
     read_subdivision(node, polygons.cage);
+    mesh.face_count = polygons.cage.face_vertex_counts.size();
+    uncovered_faces = read_displacement(node, polygons, reading);
     place_mesh(polygons, node);
     set_shading(polygons, read_shading(node));
     return polygons;
@@ -205,11 +212,10 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     if (node.has("heights")) {
         read_terrain(node, mesh, reading);
     } else {
-        PolygonMesh polygons = read_object_polygons(node, mesh, reading);
-        if (!mesh.of_patches) mesh.face_count = polygons.cage.face_vertex_counts.size();
+        PolygonMesh polygons = read_object_polygons(node, mesh, uncovered_faces, reading);
         TriangulatedMesh triangulated = triangulate(polygons);
         mesh.object = std::move(triangulated.object);
-        uncovered_faces = triangulated.uncovered_faces;
+        uncovered_faces += triangulated.uncovered_faces;
         own = std::move(polygons.materials);
     }
     settle_materials(own, mesh, reading.scene);

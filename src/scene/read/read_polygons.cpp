@@ -195,6 +195,14 @@ Material make_material(const MtlMaterial& mtl, const std::filesystem::path& fold
     return material;
 }
 
+/// The heights by which a material moves its faces.
+HeightMap make_heights(const MtlMaterial& mtl, const std::filesystem::path& folder, Reading& reading) {
+    HeightMap heights{{}, mtl.displacement_gain, mtl.displacement_base};
+    if (!mtl.displacement.empty())
+        heights.texture.picture = read_numbers(reading, picture_path(mtl, mtl.displacement, folder));
+    return heights;
+}
+
 /// Turns the OBJ's material names into materials, those that faces use only.
 void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const std::string& place,
                        Reading& reading) {
@@ -211,6 +219,7 @@ void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const 
         }
         index_of_name[i] = static_cast<Id>(obj.mesh.materials.size());
         obj.mesh.materials.push_back(make_material(found->second, folder, reading));
+        obj.mesh.heights.push_back(make_heights(found->second, folder, reading));
     }
     for (Id& material : obj.mesh.face_material)
         if (material != kNone) material = index_of_name[material];

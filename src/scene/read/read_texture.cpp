@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/image/texture_lookup.h"
 #include "base/math/luminance.h"
 #include "base/math/srgb.h"
 #include "scene/read/reading.h"
@@ -229,15 +230,10 @@ std::shared_ptr<const Texture> read_numbers(Reading& reading, const std::string&
 }
 
 std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const TextureSampler& wrap) {
-    const auto wrapped = [](int i, int size, Wrap how) {
-        if (how == Wrap::kRepeat) return (i + size) % size;
-        return std::clamp(i, 0, size - 1);  // of a mirrored picture the texel beyond the edge is that at it
-    };
     const auto height = [&](int x, int y) {
-        const auto row = static_cast<std::size_t>(wrapped(y, heights.height, wrap.wrap_t));
-        const auto column = static_cast<std::size_t>(wrapped(x, heights.width, wrap.wrap_s));
-        const float* rgb = &heights.rgb[3 * (row * static_cast<std::size_t>(heights.width) + column)];
-        return luminance(Vec3(rgb[0], rgb[1], rgb[2]));
+        const int row = wrapped_texel(y, heights.height, wrap.wrap_t);
+        const int column = wrapped_texel(x, heights.width, wrap.wrap_s);
+        return luminance(texel_at(heights, column, row));
     };
     auto normals = std::make_shared<Texture>();
     normals->width = heights.width;

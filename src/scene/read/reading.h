@@ -17,8 +17,8 @@
 #include "scene/data/primitive_mesh.h"
 #include "scene/data/scene.h"
 #include "scene/data/scene_inputs.h"
-#include "scene/data/vertex_normals.h"
 #include "scene/formats/gltf.h"
+#include "scene/meshes/vertex_normals.h"
 #include "terrain/thinning.h"
 
 namespace trilens {
@@ -71,6 +71,12 @@ struct WrittenPatch {
     int columns = 4;
 };
 inline constexpr int kMostSplineColumns = 10000;
+
+/// A mesh's `displacement`, but for its map.
+struct DisplacementSettings {
+    double scale = 1, offset = 0;
+    int subdivide = 1;
+};
 
 /// Reads each picture once. Throws what the texture reader throws.
 std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string& path);
@@ -128,6 +134,10 @@ PolygonMesh read_object_patches(const Node& node, Mesh& mesh);
 /// Divides an object's triangles as its `bakedLight` says, and gives them that light. Throws InputError where
 /// it is of another mesh.
 void read_baked_light(const Node& baked, ObjectMesh& object);
+/// Divides a mesh and moves its points, in its own frame, as its `displacement` and the heights of its file's
+/// materials say. Returns how many of its faces, cut into triangles for it, cross themselves. Throws
+/// InputError where it has no uv, and where it would have too many triangles.
+std::size_t read_displacement(const Node& mesh, PolygonMesh& polygons, Reading& reading);
 /// What normals an object is lit by.
 ObjectShading read_shading(const Node& mesh);
 
@@ -165,6 +175,7 @@ const std::vector<Field<Cage>>& subdivision_fields();         // keys of a mesh,
 const std::vector<Field<TerrainSettings>>& terrain_fields();  // keys of a mesh, too
 const std::vector<Field<InterestRegion>>& region_fields();
 const std::vector<Field<WrittenPatch>>& patch_fields();
+const std::vector<Field<DisplacementSettings>>& displacement_fields();
 const std::vector<Field<ObjectPrimitive>>& primitive_fields();
 const std::vector<Field<NormalOverride>>& normal_fields();
 
@@ -187,9 +198,10 @@ Json transfer_point_schema();
 Json point_cloud_schema();
 Json label_schema();
 Json mesh_schema();
-Json region_schema();       // of a terrain
-Json patch_schema();        // of a mesh
-Json baked_light_schema();  // of a mesh
+Json region_schema();        // of a terrain
+Json patch_schema();         // of a mesh
+Json baked_light_schema();   // of a mesh
+Json displacement_schema();  // of a mesh
 Json primitive_schema();
 Json lens_side_schema();  // of a primitive
 Json normals_schema();

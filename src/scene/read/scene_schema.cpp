@@ -176,6 +176,7 @@ Json make_schema() {
     definitions["mesh"] = mesh_schema();
     definitions["region"] = region_schema();
     definitions["patch"] = patch_schema();
+    definitions["displacement"] = displacement_schema();
     definitions["bakedLight"] = baked_light_schema();
     definitions["primitive"] = primitive_schema();
     definitions["lensSide"] = lens_side_schema();

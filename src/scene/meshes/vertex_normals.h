@@ -1,6 +1,9 @@
 // Normals of a polygon mesh's points: the mean of the faces around each, weighted by their angles there.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "base/util/names.h"
 #include "scene/data/polygons.h"
 
@@ -16,6 +19,15 @@ struct EnumNames<ObjectShading> {
                                        NamedValue<ObjectShading>{ObjectShading::kFlatNormals, "flat"},
                                        NamedValue<ObjectShading>{ObjectShading::kSmoothNormals, "smooth"}};
 };
+
+/// For each point the first one at the same place.
+std::vector<std::size_t> first_at_place(const std::vector<Vec3>& points);
+
+/// What a face brings to the mean normal at each of its corners: its unit normal, on the side that shows it
+/// anticlockwise, times its angle there in radians; zero in holes and where a face has no area.
+std::vector<Vec3> corner_normals(const Cage& cage);
+/// Sums of them that are shorter cancel but for rounding, and have no direction.
+inline constexpr double kCancelled = 1e-9;
 
 /// Gives every corner without a normal (none at all, or zero) the unit mean of the normals of the faces that
 /// meet at its point, each weighted by its angle there [Thuermer, Wuethrich, Computing Vertex Normals from

@@ -14,7 +14,8 @@ void weld_points(PolygonMesh& mesh);
 void join_quads(PolygonMesh& mesh);
 inline constexpr double kNearlyFlat = 0.8;  // cosine of the angle between the normals
 
-/// Cuts all faces into triangles; holes are left out.
-void cut_into_triangles(PolygonMesh& mesh);
+/// Cuts all faces into triangles; holes are left out. Returns how many cross themselves: they became fans
+/// that do not cover them.
+std::size_t cut_into_triangles(PolygonMesh& mesh);
 
 }  // namespace trilens

@@ -1,6 +1,6 @@
 // Vertex normals weighted by angle [Thuermer, Wuethrich, Computing Vertex Normals from Polygonal Facets,
 // 1998].
-#include "scene/data/vertex_normals.h"
+#include "scene/meshes/vertex_normals.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,8 @@ double corner_angle(const Vec3& before, const Vec3& at, const Vec3& after) {
     return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-/// For each point the first one at the same place.
+}  // namespace
+
 std::vector<std::size_t> first_at_place(const std::vector<Vec3>& points) {
     std::map<std::array<double, 3>, std::size_t> places;
     std::vector<std::size_t> first(points.size());
@@ -34,8 +35,8 @@ std::vector<std::size_t> first_at_place(const std::vector<Vec3>& points) {
     return first;
 }
 
-std::vector<Vec3> point_normals(const Cage& cage, const std::vector<std::size_t>& place) {
-    std::vector<Vec3> sums(cage.points.size(), Vec3(0));
+std::vector<Vec3> corner_normals(const Cage& cage) {
+    std::vector<Vec3> weighted(cage.face_vertex_indices.size(), Vec3(0));
     std::vector<char> is_hole(cage.face_vertex_counts.size(), 0);
     for (const int face : cage.hole_indices) is_hole[static_cast<std::size_t>(face)] = 1;
     std::vector<Vec3> polygon;
@@ -43,30 +44,29 @@ std::vector<Vec3> point_normals(const Cage& cage, const std::vector<std::size_t>
     for (std::size_t face = 0; face < cage.face_vertex_counts.size(); ++face) {
         const auto count = static_cast<std::size_t>(cage.face_vertex_counts[face]);
         const int* const corners = cage.face_vertex_indices.data() + first;
-        first += count;
-        if (is_hole[face]) continue;
         polygon.clear();
         for (std::size_t k = 0; k < count; ++k)
             polygon.push_back(cage.points[static_cast<std::size_t>(corners[k])]);
-        const Vec3 normal = face_normal(polygon);
+        const Vec3 normal = is_hole[face] ? Vec3(0) : face_normal(polygon);
         for (std::size_t k = 0; k < count; ++k)
-            sums[place[static_cast<std::size_t>(corners[k])]] +=
+            weighted[first + k] =
                 corner_angle(polygon[(k + count - 1) % count], polygon[k], polygon[(k + 1) % count]) * normal;
+        first += count;
     }
-    return sums;
+    return weighted;
 }
-
-}  // namespace
 
 void add_smooth_normals(PolygonMesh& mesh) {
     const std::vector<std::size_t> place = first_at_place(mesh.cage.points);
-    const std::vector<Vec3> sums = point_normals(mesh.cage, place);
+    const std::vector<Vec3> weighted = corner_normals(mesh.cage);
+    std::vector<Vec3> sums(mesh.cage.points.size(), Vec3(0));
+    for (std::size_t corner = 0; corner < weighted.size(); ++corner)
+        sums[place[static_cast<std::size_t>(mesh.cage.face_vertex_indices[corner])]] += weighted[corner];
     mesh.normals.resize(mesh.cage.face_vertex_indices.size(), Vec3(0));
     for (std::size_t corner = 0; corner < mesh.normals.size(); ++corner) {
         if (mesh.normals[corner] != Vec3(0)) continue;
         const Vec3& sum = sums[place[static_cast<std::size_t>(mesh.cage.face_vertex_indices[corner])]];
-        // What cancels but for rounding has no direction.
-        if (length(sum) > 1e-9) mesh.normals[corner] = normalize_or_zero(sum);
+        if (length(sum) > kCancelled) mesh.normals[corner] = normalize_or_zero(sum);
     }
 }
 

@@ -1,4 +1,4 @@
-#include "scene/data/weld.h"
+#include "scene/meshes/weld.h"
 
 #include <array>
 #include <map>
@@ -13,6 +13,7 @@ class FaceCopier {
     explicit FaceCopier(const PolygonMesh& from) : from_(from) {
         to_.cage = from.cage;
         to_.materials = from.materials;
+        to_.heights = from.heights;
         to_.is_triangle_soup = from.is_triangle_soup;
         to_.cage.face_vertex_counts.clear();
         to_.cage.face_vertex_indices.clear();
@@ -114,11 +115,11 @@ void join_quads(PolygonMesh& mesh) {
     mesh = copier.done();
 }
 
-void cut_into_triangles(PolygonMesh& mesh) {
+std::size_t cut_into_triangles(PolygonMesh& mesh) {
     std::vector<char> is_hole(mesh.cage.face_vertex_counts.size(), 0);
     for (const int face : mesh.cage.hole_indices) is_hole[static_cast<std::size_t>(face)] = 1;
     FaceCopier copier(mesh);
-    std::size_t first = 0;
+    std::size_t first = 0, uncovered = 0;
     std::vector<Vec3> polygon;
     for (std::size_t face = 0; face < mesh.cage.face_vertex_counts.size(); ++face) {
         const auto count = static_cast<std::size_t>(mesh.cage.face_vertex_counts[face]);
@@ -126,12 +127,16 @@ void cut_into_triangles(PolygonMesh& mesh) {
         for (std::size_t k = 0; k < count; ++k)
             polygon.push_back(
                 mesh.cage.points[static_cast<std::size_t>(mesh.cage.face_vertex_indices[first + k])]);
-        if (!is_hole[face])
-            for (const auto& [a, b, c] : triangulate_polygon(polygon).triangles)
+        if (!is_hole[face]) {
+            const PolygonTriangles cut = triangulate_polygon(polygon);
+            for (const auto& [a, b, c] : cut.triangles)
                 copier.add(std::array<std::size_t, 3>{first + a, first + b, first + c}, face);
+            if (!cut.covers) ++uncovered;
+        }
         first += count;
     }
     mesh = copier.done();
+    return uncovered;
 }
 
 }  // namespace trilens
