@@ -12,6 +12,7 @@
 #include <optional>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "base/files/files.h"
 #include "base/util/error.h"
@@ -139,7 +140,25 @@ std::string name_for_format(std::span<const unsigned char> encoded) {
     return "";
 }
 
+/// Containers of textures for graphics cards are known by their first bytes; nobody here reads them.
+void refuse_card_textures(std::string_view start, const std::string& name) {
+    using namespace std::string_view_literals;
+    constexpr std::pair<std::string_view, const char*> kContainers[] = {
+        {"\xabKTX 20\xbb\r\n\x1a\n"sv, "KTX2"},
+        {"\xabKTX 11\xbb\r\n\x1a\n"sv, "KTX"},
+        {"sB\x13\0"sv, "Basis Universal"}};
+    for (const auto& [magic, kind] : kContainers)
+        if (start.substr(0, magic.size()) == magic)
+            throw InputError(name, "",
+                             std::string("is ") + kind +
+                                 ", a texture for graphics cards, which is not read: give it as PNG, JPEG or "
+                                 "OpenEXR");
+}
+
 std::unique_ptr<OIIO::ImageInput> open_file(const std::string& file) {
+    std::array<char, 16> start{};
+    std::ifstream(file, std::ios::binary).read(start.data(), start.size());
+    refuse_card_textures({start.data(), start.size()}, file);
     const OIIO::ImageSpec hints = reading_hints();
     auto in = OIIO::ImageInput::open(file, &hints);
     if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
@@ -194,6 +213,7 @@ HeightGrid heights_of(const std::string& file) {
 }
 
 std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, const std::string& name) {
+    refuse_card_textures({reinterpret_cast<const char*>(encoded.data()), encoded.size()}, name);
     const std::string format = name_for_format(encoded);
     if (format.empty()) throw InputError(name, "", "is neither PNG, JPEG, OpenEXR nor Radiance");
     OIIO::Filesystem::IOMemReader memory(encoded.data(), encoded.size());
@@ -215,8 +235,8 @@ void set_threads(int threads) {
 }  // namespace trilens
 
 const trilens::PictureLibrary* trilens_picture_library() {
-    static const trilens::PictureLibrary library{trilens::kVersion, trilens::read, trilens::decode,
-                                                 trilens::heights_of, trilens::letters_of,
-                                                 trilens::set_threads};
+    static const trilens::PictureLibrary library{trilens::kVersion,   trilens::read,
+                                                 trilens::decode,     trilens::heights_of,
+                                                 trilens::letters_of, trilens::set_threads};
     return &library;
 }

@@ -215,6 +215,39 @@ TEST_CASE("what is no picture is an InputError that names it", "[image][bad-inpu
     CHECK_THROWS_AS(write_png(folder + "/no/such.png", 1, 1, std::vector<float>(3)), OutputError);
 }
 
+TEST_CASE("textures for graphics cards are refused by the name of their kind", "[image][bad-input]") {
+    using namespace std::string_literals;
+    const std::string folder = trilens_test::scratch_dir("card_textures");
+    const auto refusal = [](const auto& read) {
+        try {
+            read();
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string rest =
+        ", a texture for graphics cards, which is not read: give it as PNG, JPEG or OpenEXR";
+    for (const auto& [magic, kind] :
+         {std::pair("\xabKTX 20\xbb\r\n\x1a\n"s, "KTX2"), std::pair("\xabKTX 11\xbb\r\n\x1a\n"s, "KTX"),
+          std::pair("sB\x13\0"s, "Basis Universal")}) {
+        // By its bytes, whatever its name.
+        for (const char* name : {"/a.ktx2", "/a.jpg"}) {
+            const std::string file = folder + name, bytes = magic + std::string(80, '\0');
+            std::ofstream(file, std::ios::binary) << bytes;
+            CHECK(refusal([&] { read_texture(file); }) == file + ": is " + kind + rest);
+            CHECK(refusal([&] { read_heights(file); }) == file + ": is " + kind + rest);
+            const std::vector<unsigned char> encoded(bytes.begin(), bytes.end());
+            CHECK(refusal([&] { decode_texture(encoded, "a.glb image 0"); }) ==
+                  "a.glb image 0: is " + std::string(kind) + rest);
+        }
+        // Cut off within the signature it is nothing.
+        const std::vector<unsigned char> cut(magic.begin(), magic.end() - 1);
+        CHECK(refusal([&] { decode_texture(cut, "cut"); }) ==
+              "cut: is neither PNG, JPEG, OpenEXR nor Radiance");
+    }
+}
+
 TEST_CASE("the library says which it is", "[image]") {
     CHECK(image_library_version().find("OpenImageIO 2.") == 0);
 }

@@ -154,6 +154,31 @@ TEST_CASE("glTF accessors: sparse or normalised or out of bounds", "[scene]") {
     CHECK(mesh.uvs[2] == Vec2(0, 0));
 }
 
+TEST_CASE("a texture of KTX2 alone is ignored with a word, one with another picture is that",
+          "[scene][bad-input]") {
+    const std::string folder = scratch_dir("scene_gltf_basisu");
+    const auto model_with = [&](const std::string& texture) {
+        Square square;
+        square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";
+        square.more =
+            R"(,"extensionsUsed":["KHR_texture_basisu"],"materials":[{"name":"painted","pbrMetallicRoughness":
+            {"baseColorTexture":{"index":0}}}],"textures":[{)" +
+            texture +
+            R"("extensions":{"KHR_texture_basisu":{"source":1}}}],"images":[{"uri":"a.png"},{"uri":"a.ktx2"}])";
+        return read_gltf(write_square(folder, gltf_text(square)));
+    };
+    const std::string word = "a texture of KTX2 alone (KHR_texture_basisu) is ignored: KTX2 is not read";
+    const auto says = [&](const GltfModel& model) {
+        return std::any_of(model.warnings.begin(), model.warnings.end(),
+                           [&](const std::string& warning) { return contains(warning, word); });
+    };
+    const GltfModel alone = model_with(""), beside = model_with(R"("source":0,)");
+    CHECK(says(alone));
+    CHECK(!alone.materials[0].written.contains("baseColorTexture"));
+    CHECK(!says(beside));
+    CHECK(beside.materials[0].written.at("baseColorTexture").at("image") == 0);
+}
+
 TEST_CASE("TEXCOORD_0 and TEXCOORD_1 are two sets of uv, and materials say which", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_two_uvs");
     Square square;

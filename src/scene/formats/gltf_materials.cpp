@@ -190,7 +190,9 @@ class MaterialReader {
         const tinygltf::Texture& in = source_.model.textures[static_cast<std::size_t>(texture)];
         const int image = source_.checked(in.source, into_.images.size(), place, "image");
         if (image < 0) {
-            source_.warn("a texture without a picture that is known is ignored");
+            source_.warn(in.extensions.count("KHR_texture_basisu") > 0
+                             ? "a texture of KTX2 alone (KHR_texture_basisu) is ignored: KTX2 is not read"
+                             : "a texture without a picture that is known is ignored");
             return nullptr;
         }
         Json written{{"image", image}};
