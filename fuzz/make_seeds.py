@@ -115,9 +115,36 @@ METADATA
 INFORMATION 0
 
 """)
+    places, heat = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), struct.pack("<4d", 0, 1, 2, 2.5)
+    write("vtk", "binary", b"# vtk DataFile Version 3.0\nbytes\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
+          struct.pack(">12f", *struct.unpack("<12f", places)) + b"\nCELLS 1 5\n" + struct.pack(">5i", 4, 0, 1, 2, 3) +
+          b"\nCELL_TYPES 1\n" + struct.pack(">i", 10) + b"\nCELL_DATA 1\nSCALARS part int\nLOOKUP_TABLE default\n" +
+          struct.pack(">i", 7) + b"\nPOINT_DATA 4\nSCALARS heat double\nLOOKUP_TABLE default\n" +
+          struct.pack(">4d", *struct.unpack("<4d", heat)) + b"\n")
+    # What is packed unpacks to itself in the fuzzer.
+    for packed in (False, True):
+        data, tags = b"", {}
+        for name, content in (("", places), ("connectivity", struct.pack("<4q", 0, 1, 2, 3)), ("offsets", struct.pack("<i", 4)),
+                              ("types", b"\x0a"), ("heat", heat)):
+            kind = {"": "Float32", "connectivity": "Int64", "offsets": "Int32", "types": "UInt8", "heat": "Float64"}[name]
+            stored = struct.pack("<4I", 1, len(content), 0, len(content)) if packed else struct.pack("<I", len(content))
+            tags[name] = f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{1 if name else 3}" format='
+            if packed:
+                tags[name] += f'"appended" offset="{len(data)}"/>'
+                data += stored + content
+            else:
+                tags[name] += f'"binary">{base64.b64encode(stored + content).decode()}</DataArray>'
+        write("vtk", "xml-appended" if packed else "xml", (
+            '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" byte_order="LittleEndian"' +
+            (' compressor="vtkZLibDataCompressor"' if packed else "") + '><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">'
+            f'<Points>{tags[""]}</Points><Cells>{tags["connectivity"]}{tags["offsets"]}{tags["types"]}</Cells><PointData>{tags["heat"]}'
+            '</PointData></Piece></UnstructuredGrid>' + ('<AppendedData encoding="raw">_' if packed else "")).encode() + data +
+            (b"</AppendedData>" if packed else b"") + b"</VTKFile>")
+
     head = "NRRD0004\n# seed\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nspace origin: (0,0,1)\n"
     write("nrrd", "raw", (head + "spacings: 1 2 3\nencoding: raw\n\n").encode() + bytes(range(8)))
     write("nrrd", "text", head + "space directions: (0,1,0) (1,0,0) (0,0,2)\nencoding: ascii\nkey:=value\n\n0 1 2 3 4 5 6 7\n")
+    write("nrrd", "gzip", (head + "spacings: 1 2 3\nencoding: gzip\n\n").encode() + bytes(range(8)))
     write("nrrd", "detached", head + "encoding: raw\nbyte skip: 56\ndata file: x.raw\n")
 
 

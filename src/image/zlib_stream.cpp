@@ -62,17 +62,29 @@ std::size_t deflate(std::span<unsigned char> from, std::span<unsigned char> to) 
     return stream.internal_state.state == ZSTATE_END ? stream.total_out : 0;
 }
 
-bool inflate(std::span<unsigned char> from, std::span<unsigned char> to) {
+namespace {
+
+bool inflate_as(std::uint32_t kind, std::span<unsigned char> from, std::span<unsigned char> to) {
     const UpperHalves cleared;
     thread_local const auto state = std::make_unique<inflate_state>();
     isal_inflate_init(state.get());
-    state->crc_flag = ISAL_ZLIB;
+    state->crc_flag = kind;
     state->next_in = from.data();
     state->avail_in = static_cast<std::uint32_t>(from.size());
     state->next_out = to.data();
     state->avail_out = static_cast<std::uint32_t>(to.size());
     return isal_inflate_stateless(state.get()) == ISAL_DECOMP_OK && state->block_state == ISAL_BLOCK_FINISH &&
            state->total_out == to.size();
+}
+
+}  // namespace
+
+bool inflate(std::span<unsigned char> from, std::span<unsigned char> to) {
+    return inflate_as(ISAL_ZLIB, from, to);
+}
+
+bool inflate_gzip(std::span<unsigned char> from, std::span<unsigned char> to) {
+    return inflate_as(ISAL_GZIP, from, to);
 }
 
 std::uint32_t png_checksum(std::span<const unsigned char> bytes) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <new>
 #include <optional>
 #include <string_view>
@@ -182,6 +183,77 @@ std::vector<float> first_channel(OIIO::ImageInput& in, OIIO::TypeDesc type, cons
         return std::vector<float>(stored.begin(), stored.end());
 }
 
+/// The first directory of a TIFF, classic or big, of either byte order, as far as one tag of text needs it:
+/// the library hands on no tags that it does not know. Source: TIFF Revision 6.0, Adobe, 1992; BigTIFF as
+/// libtiff describes it.
+class TiffDirectory {
+  public:
+    explicit TiffDirectory(const std::string& file) : in_(file, std::ios::binary) {}
+
+    /// Empty where the file is no TIFF, lacks the tag, or ends before it.
+    std::string text(unsigned wanted) {
+        const std::string order = bytes(2);
+        if (order != "II" && order != "MM") return "";
+        is_big_endian_ = order == "MM";
+        const std::uint64_t version = number(2);
+        if (version != 42 && version != 43) return "";
+        is_big_ = version == 43;
+        if (is_big_) number(4);  // the size of offsets, and nothing
+        in_.seekg(static_cast<std::streamoff>(number(offset_size())));
+        const std::uint64_t entries = std::min<std::uint64_t>(number(is_big_ ? 8 : 2), kMostEntries);
+        for (std::uint64_t i = 0; i < entries && in_; ++i) {
+            const std::uint64_t tag = number(2), type = number(2), count = number(offset_size());
+            if (tag == wanted && type == kAscii && count <= kMostText) {
+                if (count > offset_size()) in_.seekg(static_cast<std::streamoff>(number(offset_size())));
+                return bytes(count);
+            }
+            number(offset_size());
+        }
+        return "";
+    }
+
+  private:
+    static constexpr std::uint64_t kMostEntries = 65535, kMostText = 64, kAscii = 2;
+
+    std::size_t offset_size() const { return is_big_ ? 8 : 4; }
+    std::string bytes(std::size_t count) {
+        std::string read(count, '\0');
+        if (!in_.read(read.data(), static_cast<std::streamsize>(count))) read.clear();
+        return read;
+    }
+    std::uint64_t number(std::size_t size) {
+        std::string read = bytes(size);
+        if (!is_big_endian_) std::reverse(read.begin(), read.end());
+        std::uint64_t value = 0;
+        for (const char byte : read) value = value << 8 | static_cast<unsigned char>(byte);
+        return value;
+    }
+
+    std::ifstream in_;
+    bool is_big_endian_ = false, is_big_ = false;
+};
+
+/// What a GeoTIFF says its samples without a value hold (GDAL's tag GDAL_NODATA), as numbers of the file.
+std::optional<double> no_data_of(const std::string& file) {
+    constexpr unsigned kGdalNoData = 42113;
+    const std::string text = TiffDirectory(file).text(kGdalNoData);
+    const std::string number(OIIO::Strutil::strip(text.c_str()));
+    if (!OIIO::Strutil::string_is_float(number)) return std::nullopt;
+    return OIIO::Strutil::stod(number);
+}
+
+/// Samples that hold nothing become NaN. Shares of the greatest are compared as the numbers that they were.
+void mark_no_data(std::vector<float>& values, double no_data, OIIO::TypeDesc type) {
+    const double scale = type.basetype == OIIO::TypeDesc::UINT8    ? 255
+                         : type.basetype == OIIO::TypeDesc::UINT16 ? 65535
+                                                                   : 1;
+    const auto holds_nothing = [&](float value) {
+        return scale == 1 ? value == static_cast<float>(no_data)
+                          : std::round(static_cast<double>(value) * scale) == no_data;
+    };
+    std::replace_if(values.begin(), values.end(), holds_nothing, std::numeric_limits<float>::quiet_NaN());
+}
+
 HeightGrid heights_of(const std::string& file) {
     const std::size_t size = readable_size(file);
     const auto in = open_file(file);
@@ -209,6 +281,7 @@ HeightGrid heights_of(const std::string& file) {
     } catch (const std::bad_alloc&) {
         throw InputError(file, "", "needs more memory than there is");
     }
+    if (const auto no_data = no_data_of(file)) mark_no_data(heights.values, *no_data, spec.format);
     return heights;
 }
 

@@ -5,6 +5,7 @@
 #include "base/util/error.h"
 #include "base/util/names.h"
 #include "image/image_io.h"
+#include "image/zlib_stream.h"
 #include "render/project/film_moves.h"
 #include "scene/animation.h"
 #include "scene/load.h"
@@ -13,12 +14,22 @@
 namespace trilens {
 namespace {
 
+/// gzip by its first bytes, else zlib.
+bool inflate_stream(std::string_view packed, std::span<char> to) {
+    std::vector<unsigned char> from(packed.begin(), packed.end());
+    const std::span<unsigned char> room(reinterpret_cast<unsigned char*>(to.data()), to.size());
+    return packed.starts_with("\x1f\x8b") ? inflate_gzip(from, room) : inflate(from, room);
+}
+
 TextureReader texture_reader() {
     return {[](const std::string& file) { return read_texture(file); },
             [](std::span<const unsigned char> encoded, const std::string& name) {
                 return decode_texture(encoded, name);
             },
-            read_heights, draw_letters, film_moves};
+            read_heights,
+            draw_letters,
+            film_moves,
+            inflate_stream};
 }
 
 bool is_image(const std::string& file) {

@@ -1,10 +1,14 @@
 // Heights out of pictures: numbers as they are, shares of the greatest where integers have no sign.
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/util/error.h"
 #include "image/image_io.h"
@@ -112,4 +116,89 @@ TEST_CASE("files of heights that lie, end early or are too large are refused by 
     tiff << all;
     tiff.close();
     CHECK_THROWS_AS(read_heights(lying), InputError);
+}
+
+namespace {
+
+/// A TIFF of 3 x 2 samples, not packed, with GDAL's word for samples that hold nothing.
+class TiffWriter {
+  public:
+    TiffWriter(bool big_endian, bool big) : big_endian_(big_endian), big_(big) {}
+
+    /// `bits` and `format` (1: unsigned, 3: float) of the samples.
+    std::string file(const std::string& samples, std::uint64_t bits, std::uint64_t format,
+                     const std::string& word) {
+        const std::uint64_t data = big_ ? 16 : 8, text = data + samples.size();
+        std::string all = (big_endian_ ? "MM" : "II") + number(big_ ? 43 : 42, 2);
+        if (big_) all += number(8, 2) + number(0, 2);
+        all += number(text + word.size() + 1, offset()) + samples + word + '\0';
+        const std::vector<std::array<std::uint64_t, 3>> tags{
+            {256, 3, 3}, {257, 3, 2}, {258, 3, bits},           {259, 3, 1},     {262, 3, 1}, {273, 4, data},
+            {277, 3, 1}, {278, 3, 2}, {279, 4, samples.size()}, {339, 3, format}};
+        all += number(tags.size() + 1, big_ ? 8 : 2);
+        for (const auto& [tag, type, value] : tags) {
+            const std::size_t size = type == 3 ? 2 : 4;
+            all += number(tag, 2) + number(type, 2) + number(1, offset()) + number(value, size) +
+                   std::string(offset() - size, '\0');
+        }
+        all += number(42113, 2) + number(2, 2) + number(word.size() + 1, offset());
+        if (word.size() + 1 > offset())
+            all += number(text, offset());
+        else
+            all += word + std::string(offset() - word.size(), '\0');
+        return all + number(0, offset());
+    }
+    std::string number(std::uint64_t value, std::size_t size) const {
+        std::string bytes;
+        for (std::size_t k = 0; k < size; ++k) bytes += static_cast<char>(value >> 8 * k & 255);
+        if (big_endian_) std::reverse(bytes.begin(), bytes.end());
+        return bytes;
+    }
+
+  private:
+    std::size_t offset() const { return big_ ? 8 : 4; }
+    bool big_endian_, big_;
+};
+
+HeightGrid heights_in(const std::string& bytes) {
+    const std::string file = trilens_test::scratch_dir("heights_no_data") + "/a.tif";
+    std::ofstream(file, std::ios::binary) << bytes;
+    return read_heights(file);
+}
+
+}  // namespace
+
+TEST_CASE("samples that a GeoTIFF says hold nothing are no numbers", "[image]") {
+    for (const bool big_endian : {false, true})
+        for (const bool big : {false, true}) {
+            INFO((big_endian ? "MM" : "II") << (big ? " big" : ""));
+            TiffWriter tiff(big_endian, big);
+            const auto heights = [&](const std::vector<std::uint64_t>& values, std::size_t size,
+                                     std::uint64_t format, const std::string& word) {
+                std::string samples;
+                for (const std::uint64_t value : values) samples += tiff.number(value, size);
+                const HeightGrid grid = heights_in(tiff.file(samples, 8 * size, format, word));
+                REQUIRE(grid.columns == 3);
+                REQUIRE(grid.rows == 2);
+                return grid;
+            };
+            // Floats 0, 1, 2, -9999, 1.5, the lowest of all; 7 has five digits less than the tag has room
+            // for.
+            const std::vector<std::uint64_t> floats{0,          0x3f800000, 0x40000000,
+                                                    0xc61c3c00, 0x3fc00000, 0xff7fffff};
+            const HeightGrid some = heights(floats, 4, 3, "-9999");
+            CHECK(std::isnan(some.at(0, 1)));
+            CHECK(some.at(2, 0) == 2);
+            CHECK(!std::isnan(some.at(2, 1)));
+            const HeightGrid lowest = heights(floats, 4, 3, "-3.40282346638529e+38");
+            CHECK(std::isnan(lowest.at(2, 1)));
+            CHECK(!std::isnan(lowest.at(0, 1)));
+            CHECK(std::isnan(heights(floats, 4, 3, "2").at(2, 0)));
+            for (const char* word : {"nan", "none", "", "1.25"})
+                for (const float value : heights(floats, 4, 3, word).values) CHECK(!std::isnan(value));
+            const HeightGrid shares = heights({0, 1, 65535, 32767, 32768, 7}, 2, 1, "32767");
+            CHECK(std::isnan(shares.at(0, 1)));
+            CHECK(shares.at(1, 1) == Approx(32768 / 65535.));
+            CHECK(std::isnan(heights({0, 1, 255, 12, 13, 14}, 1, 1, "12").at(0, 1)));
+        }
 }

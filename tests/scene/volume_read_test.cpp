@@ -1,8 +1,10 @@
 // Volumes out of scene files: every source of cells, and what is refused or warned of.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,13 @@ std::string vtk(const std::string& cells, const std::string& data) {
     return "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n"
            "POINTS 5 float\n0 0 0 1 0 0 0 1 0\n0 0 1 1 1 1\n" +
            cells + data;
+}
+
+/// As if nothing were packed.
+bool copied(std::string_view packed, std::span<char> to) {
+    if (packed.size() < to.size()) return false;
+    std::copy_n(packed.begin(), to.size(), to.begin());
+    return true;
 }
 
 constexpr const char* kCells = "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\n";
@@ -189,8 +198,8 @@ TEST_CASE("VTK's legacy files are read, of both ways to write cells", "[scene]")
 
 TEST_CASE("bad VTK files are refused with the line", "[scene]") {
     CHECK(contains(message_of("a.vtk", "solid\n"), "begin with '# vtk DataFile Version'"));
-    CHECK(contains(message_of("a.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\n"),
-                   "BINARY"));
+    CHECK(contains(message_of("a.vtk", "# vtk DataFile Version 3.0\nt\nEBCDIC\nDATASET UNSTRUCTURED_GRID\n"),
+                   "neither ASCII nor BINARY"));
     CHECK(contains(message_of("a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n"),
                    "POLYDATA"));
     CHECK(contains(message_of("a.vtk", vtk("CELLS 2 10\n4 0 1 2 3\n4 1 2 3 9\nCELL_TYPES 2\n10 10\n", kData)),
@@ -217,8 +226,8 @@ TEST_CASE("bad VTK files are refused with the line", "[scene]") {
                                            "POINT_DATA 5\nSCALARS heat float\nLOOKUP_TABLE default\n"
                                            "0.125 1.125 2.125\n")),
                    "ends where a number must stand"));
-    CHECK(contains(message_of("a.vtu", "<VTKFile>"), "XML"));
-    CHECK(contains(message_of("a.obj", "v 0 0 0"), "neither .vtk nor"));
+    CHECK(contains(message_of("a.vtu", "<VTKFile>"), "holds ''; UnstructuredGrid is read"));
+    CHECK(contains(message_of("a.obj", "v 0 0 0"), "neither .vtk, .vtu, .nrrd nor .nhdr"));
 }
 
 TEST_CASE("NRRDs are read, attached, detached and as text, and refused with the line", "[scene]") {
@@ -226,22 +235,29 @@ TEST_CASE("NRRDs are read, attached, detached and as text, and refused with the 
     const auto none = [](const std::string&) { return std::string(); };
     const RegularGrid grid = parse_nrrd(head + "spacings: 1 2 3\nspace origin: (1,0,-1)\nencoding: raw\n\n" +
                                             std::string("\0\1\2\3\4\5\6\7", 8),
-                                        "a.nrrd", none);
+                                        "a.nrrd", none, copied);
     CHECK(grid.scalars[7] == 7);
     CHECK(grid.steps[2] == Vec3(0, 0, 3));
     CHECK(grid.origin == Vec3(1, 0, -1));
     const RegularGrid turned =
         parse_nrrd(head + "space directions: (0,1,0) (1,0,0) (0,0,2)\nencoding: ascii\n\n0 1 2 3\n4 5 6 7\n",
-                   "b.nrrd", none);
+                   "b.nrrd", none, copied);
     CHECK(turned.steps[0] == Vec3(0, 1, 0));
     CHECK(turned.scalars[5] == 5);
-    const RegularGrid detached =
-        parse_nrrd(head + "encoding: raw\ndata file: b.raw\n", "c.nhdr", [](const std::string& name) {
+    const RegularGrid detached = parse_nrrd(
+        head + "encoding: raw\ndata file: b.raw\n", "c.nhdr",
+        [](const std::string& name) {
             CHECK(name == "b.raw");
             return std::string(8, '\3');
-        });
+        },
+        copied);
     CHECK(detached.scalars[3] == 3);
-    CHECK(contains(message_of("a.nrrd", head + "encoding: gzip\n\nxx"), "gzip"));
+    const RegularGrid packed = parse_nrrd(head + "encoding: gzip\nbyte skip: 2\n\nxx" + std::string(8, '\5'),
+                                          "d.nrrd", none, copied);
+    CHECK(packed.scalars == std::vector<double>(8, 5));
+    CHECK(contains(message_of("a.nrrd", head + "encoding: gzip\n\nxx"),
+                   "no gzip stream of 8 bytes, as its sizes say"));
+    CHECK(contains(message_of("a.nrrd", head + "encoding: bzip2\n\nxx"), "'bzip2' are not read"));
     CHECK(contains(message_of("a.nrrd", head + "encoding: raw\n\nxx"), "2 bytes of samples"));
     CHECK(contains(message_of("a.nrrd", "NRRD0004\ntype: block\n"), "line 2"));
     CHECK(contains(message_of("a.nrrd", "NRRD0004\ndimension: 2\n"), "three are read"));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/description/film_move.h"
@@ -39,6 +40,9 @@ struct ImportOptions {
 
 struct Scene;
 
+/// Whether the bytes, a stream of zlib or gzip, are whole and fill `to`.
+using Inflate = std::function<bool(std::string_view packed, std::span<char> to)>;
+
 /// Returns a linear Rec.709 picture, or the numbers of one, or throws an InputError that names the file.
 /// from_memory reads a picture held in memory (GLB).
 struct TextureReader {
@@ -50,6 +54,7 @@ struct TextureReader {
     std::function<TextMask(const TextStyle& style)> letters = {};  // none: labels have no letters
     /// Of all cameras of a scene that is read but for terrains with a tolerance, its optics as they are.
     std::function<FilmMoves(const Scene& scene)> film_moves = {};
+    Inflate inflate = {};  // none: what is packed is not read
 };
 
 }  // namespace trilens

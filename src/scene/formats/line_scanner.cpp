@@ -114,6 +114,15 @@ std::size_t WordScanner::count(const char* what) {
     return static_cast<std::size_t>(value);
 }
 
+std::string_view WordScanner::bytes(std::size_t count, const std::string& what) {
+    rest_of_line();
+    if (count > text_.size() - at_)
+        fail("says that " + what + " follow, for which the rest of the file is too short");
+    const std::string_view found = text_.substr(at_, count);
+    at_ += count;
+    return found;
+}
+
 void WordScanner::expect(std::size_t numbers, const std::string& what) const {
     if (numbers > (text_.size() - at_ + 1) / 2)
         fail("says that " + what + " follow, for which the rest of the file is too short");

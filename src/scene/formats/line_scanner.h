@@ -47,6 +47,9 @@ class WordScanner {
     std::size_t count(const char* what);  // a whole number up to 4e9, of what it says
     void keyword(const char* wanted);     // in capitals of any case
 
+    /// As many bytes as they are, from the next line on. Fails where there are fewer.
+    std::string_view bytes(std::size_t count, const std::string& what);
+
     /// Fails where that many numbers cannot follow: each takes two letters at the least.
     void expect(std::size_t numbers, const std::string& what) const;
 

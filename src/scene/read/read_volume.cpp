@@ -226,16 +226,19 @@ std::variant<CellSoup, RegularGrid> read_cells(const Node& node, Volume& volume,
     const std::string ending = std::filesystem::path(path).extension().string();
     if (ending == ".nrrd" || ending == ".nhdr") {
         if (node.has("field")) node["field"].fail("is of a VTK file: an NRRD has one field");
-        return parse_nrrd(reading.read_file(path), path, [&](const std::string& name) {
-            return reading.read_file((std::filesystem::path(path).parent_path() / name).string());
-        });
+        return parse_nrrd(
+            reading.read_file(path), path,
+            [&](const std::string& name) {
+                return reading.read_file((std::filesystem::path(path).parent_path() / name).string());
+            },
+            reading.textures.inflate);
     }
-    if (ending != ".vtk")
-        node["file"].fail(ending == ".vtu"
-                              ? "VTK's XML files are not read: write it as legacy VTK in ASCII"
-                              : "is neither .vtk nor .nrrd nor .nhdr; samples as they lie in memory "
-                                "need a 'grid'");
-    VolumeFile file = parse_vtk(reading.read_file(path), path, string_or(node, "field", ""));
+    if (ending != ".vtk" && ending != ".vtu")
+        node["file"].fail(
+            "is neither .vtk, .vtu, .nrrd nor .nhdr; samples as they lie in memory need a 'grid'");
+    const std::string bytes = reading.read_file(path), field = string_or(node, "field", "");
+    VolumeFile file = ending == ".vtk" ? parse_vtk(bytes, path, field)
+                                       : parse_vtu(bytes, path, field, reading.textures.inflate);
     for (const std::string& warning : file.warnings) reading.warn(node["file"].place, warning);
     volume.field = file.field;
     return std::move(file.cells);

@@ -20,6 +20,8 @@ Reading::Reading(const std::string& named, const std::string& paths_start_here, 
     textures.from_memory = pictures.from_memory;
     textures.letters = pictures.letters;
     textures.film_moves = pictures.film_moves;
+    textures.inflate =
+        pictures.inflate ? pictures.inflate : [](std::string_view, std::span<char>) { return false; };
     if (pictures.heights_from_file)
         textures.heights_from_file = [this, heights_from_file =
                                                 pictures.heights_from_file](const std::string& path) {

@@ -28,6 +28,8 @@ std::size_t bytes_of(SampleType type) {
         case SampleType::kFloat:
             return 4;
         case SampleType::kDouble:
+        case SampleType::kUint64:
+        case SampleType::kInt64:
             return 8;
         default:
             return 1;
@@ -53,6 +55,10 @@ double number_at(const char* bytes, SampleType type, bool is_big_endian) {
             return value_at<float>(bytes, swap);
         case SampleType::kDouble:
             return value_at<double>(bytes, swap);
+        case SampleType::kUint64:
+            return value_at<std::uint64_t>(bytes, swap);
+        case SampleType::kInt64:
+            return value_at<std::int64_t>(bytes, swap);
     }
     return 0;
 }

@@ -23,8 +23,8 @@ void check_finite(const std::vector<double>& samples, const std::array<std::size
 }  // namespace
 
 const std::vector<std::string>& sample_type_names() {
-    static const std::vector<std::string> names{"uint8",  "int8",  "uint16", "int16",
-                                                "uint32", "int32", "float",  "double"};
+    static const std::vector<std::string> names{"uint8", "int8",  "uint16", "int16",  "uint32",
+                                                "int32", "float", "double", "uint64", "int64"};
     return names;
 }
 
@@ -90,7 +90,12 @@ std::optional<SampleType> nrrd_type(const std::string& name) {
         {SampleType::kUint32, {"uint", "unsigned int", "uint32", "uint32_t"}},
         {SampleType::kInt32, {"int", "signed int", "int32", "int32_t"}},
         {SampleType::kFloat, {"float"}},
-        {SampleType::kDouble, {"double"}}};
+        {SampleType::kDouble, {"double"}},
+        {SampleType::kUint64,
+         {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
+        {SampleType::kInt64,
+         {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64",
+          "int64_t"}}};
     for (const auto& [type, names] : kTypes)
         for (const std::string& one : names)
             if (one == name) return type;
@@ -100,9 +105,10 @@ std::optional<SampleType> nrrd_type(const std::string& name) {
 class NrrdReader {
   public:
     NrrdReader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
-    RegularGrid read(const ReadBeside& read_beside);
+    RegularGrid read(const ReadBeside& read_beside, const Inflate& inflate);
 
   private:
+    std::string unpacked(std::string_view samples, const Inflate& inflate) const;
     [[noreturn]] void fail(const std::string& message) const {
         throw InputError(file_, "line " + std::to_string(line_), message);
     }
@@ -208,7 +214,20 @@ std::vector<double> NrrdReader::text_samples(std::string_view text) const {
     return samples;
 }
 
-RegularGrid NrrdReader::read(const ReadBeside& read_beside) {
+/// What gzip packed: `byte skip` and the samples.
+std::string NrrdReader::unpacked(std::string_view samples, const Inflate& inflate) const {
+    constexpr std::size_t kMostSkipped = 1 << 20;
+    if (layout_.skip > kMostSkipped) fail("'byte skip' passes more than 1 MiB of packed bytes");
+    std::string bytes(layout_.skip + grid_.size[0] * grid_.size[1] * grid_.size[2] * bytes_of(layout_.type),
+                      '\0');
+    if (!inflate(samples, bytes))
+        throw InputError(file_, "",
+                         "holds no gzip stream of " + std::to_string(bytes.size()) +
+                             " bytes, as its sizes say: it is damaged or truncated");
+    return bytes;
+}
+
+RegularGrid NrrdReader::read(const ReadBeside& read_beside, const Inflate& inflate) {
     std::string line;
     if (!next_line(line) || !line.starts_with("NRRD000")) {
         line_ = 1;
@@ -229,21 +248,24 @@ RegularGrid NrrdReader::read(const ReadBeside& read_beside) {
         detached = read_beside(data_file_);
         samples = detached;
     }
-    if (encoding_ == "raw") {
+    const bool is_packed = encoding_ == "gzip" || encoding_ == "gz";
+    if (encoding_ == "raw" || is_packed) {
         if (bytes_of(layout_.type) > 1 && !has_endian_) fail("samples of several bytes need 'endian'");
-        grid_.scalars = decode_samples(samples, file_, grid_.size, layout_);
+        const std::string bytes = is_packed ? unpacked(samples, inflate) : std::string();
+        grid_.scalars = decode_samples(is_packed ? bytes : samples, file_, grid_.size, layout_);
     } else if (encoding_ == "ascii" || encoding_ == "text" || encoding_ == "txt") {
         grid_.scalars = text_samples(samples);
     } else {
-        fail("samples in the encoding '" + encoding_ + "' are not read: raw and ascii are");
+        fail("samples in the encoding '" + encoding_ + "' are not read: raw, gzip and ascii are");
     }
     return std::move(grid_);
 }
 
 }  // namespace
 
-RegularGrid parse_nrrd(const std::string& bytes, const std::string& file, const ReadBeside& read_beside) {
-    return NrrdReader(bytes, file).read(read_beside);
+RegularGrid parse_nrrd(const std::string& bytes, const std::string& file, const ReadBeside& read_beside,
+                       const Inflate& inflate) {
+    return NrrdReader(bytes, file).read(read_beside, inflate);
 }
 
 }  // namespace trilens
