@@ -7,8 +7,8 @@ For each scene: `render --max-error E --certify --facets all` at one sample a pi
 certify.csv and certify.md, rewritten after each scene: the share of the optics' pixels whose displacement is proven to be at most
 E, and the largest bound. Two answers are held against the bounds: for --most proven pixels, evenly chosen, the distance to where
 `project` finds the nearest image of the place that the pixel shows (how many lie beyond their bound; the bound over that distance,
-median and worst, where it is over 0.01 pixels), and for all that it can measure, `compare` with `trace` (checked, beyond). None may
-lie beyond: exit 1. Last, the processor's seconds with the proof and without. Scenes without optics have no row; those that are in
+median and worst, where it is over 0.01 pixels), over mirrors alone; and for all that it can measure, `compare` with `trace` (checked,
+beyond), reflected and through glass. None may lie beyond: exit 1. Last, the processor's seconds with the proof and without. Scenes without optics have no row; those that are in
 the CSV already are not done again.
 """
 import argparse
@@ -29,31 +29,43 @@ ROUNDING = 1e-3  # pixels: of places in floats
 
 
 def proven_pixels(image, most):
-    """Some of the pixels with a bound that show a place: (x, y) of their centres, the place, the bound."""
+    """Some of the pixels with a bound that show one place, over mirrors: (x, y) of their centres, the place, the bound."""
     bound, objects = image["bound"], image["reflectID.object"]
     places = [image[f"reflectP.{axis}"] for axis in "XYZ"]
-    rows, columns = ((bound > 0) & (objects != NONE)).nonzero()
+    rows, columns = ((bound > 0) & (objects != NONE) & (image["path.count"] == 1)).nonzero()
     for i in range(0, len(rows), max(1, -(-len(rows) // most))):
         at = rows[i], columns[i]
         yield (at[1] + 0.5, at[0] + 0.5), [float(one[at]) for one in places], float(bound[at])
 
 
-def held_by_project(options, view, image, folder):
+def nearest_images(renderer, asked, word, search):
+    """For each pixel how far from it `project` finds the nearest image of its place over that word of events; infinity: none."""
+    nearest = [math.inf] * len(asked)
+    for image in renderer.project([place for _, place, _ in asked], path=word, search=search, visibility=False):
+        i = int(image["point"])
+        nearest[i] = min(nearest[i], math.dist(asked[i][0], (float(image["x"]), float(image["y"]))))
+    return nearest
+
+
+def held_by_project(options, scene, image):
     """Bounds against the nearest image that `project` finds: pixels asked, beyond, ratios."""
     import trilens
     asked = list(proven_pixels(trilens.read_image(image), options.most))
     if not asked:
         return 0, 0, []
-    points = folder / "points.csv"
-    points.write_text("".join("{:.9g},{:.9g},{:.9g}\n".format(*place) for _, place, _ in asked))
-    found, _ = run([options.trilens, "project", *view, "--points", str(points), "--path", "R", "--max-images", "0", "--no-visibility"])
-    beyond, ratios = 0, []
-    for (pixel, _, bound), point in zip(asked, found["points"], strict=True):
-        distance = min((math.dist(pixel, (one["x"], one["y"])) for one in point["images"]), default=math.inf)
-        beyond += distance > bound + ROUNDING
-        if LEAST < distance < math.inf:
-            ratios.append(bound / distance)
-    return len(asked), beyond, ratios
+    width, height = map(int, options.size.split("x"))
+    film = {"/film/width": width, "/film/height": height}
+    renderer = trilens.Renderer(trilens.load_scene(scene, film, warn=lambda _: None))
+    distances = [math.inf] * len(asked)
+    # Images that the mirror itself hides are listed by the search near facets alone.
+    for word, search in ("R", "complete"), ("R", "facets"), ("RR", "complete"), ("RRR", "complete"), ("RRRR", "complete"):
+        others = [i for i, (_, _, bound) in enumerate(asked) if distances[i] > bound + ROUNDING]
+        if others:
+            for i, distance in zip(others, nearest_images(renderer, [asked[i] for i in others], word, search), strict=True):
+                distances[i] = min(distances[i], distance)
+    bounds = [bound for _, _, bound in asked]
+    ratios = [bound / distance for bound, distance in zip(bounds, distances) if LEAST < distance < math.inf]
+    return len(asked), sum(distance > bound + ROUNDING for bound, distance in zip(bounds, distances)), ratios
 
 
 def name_of(options, scene):
@@ -68,19 +80,19 @@ def row_of(options, scene, folder):
     picture, proven = run([*draw, "--certify"])
     if picture["optic_pixels"] == 0:
         return None
-    asked, beyond, ratios = held_by_project(options, view, image, folder)
-    bounds = {}
+    asked, beyond, ratios = held_by_project(options, scene, image)
+    bounds = []
     if picture["certified_pixels"] > 0:
         run([options.trilens, "trace", *view, "--spp", "1", "-o", truth, "--aov", "all"])
         # Exit 1: the pictures differ, which is what is measured.
         found, _ = run([options.trilens, "compare", truth, image], allowed=(0, 1))
-        bounds = found["layers"].get("reflect", {}).get("bounds_px") or {}
+        bounds = [found["layers"].get(layer, {}).get("bounds_px") or {} for layer in ("reflect", "refract")]
     pixels = picture["optic_pixels"]
     return {"scene": name_of(options, scene), "optic_pixels": pixels,
             "certified_percent": 100 * picture["certified_pixels"] / pixels, "traced_percent": 100 * picture["traced_pixels"] / pixels,
             "largest_bound": picture["certified_error"], "projected": asked, "beyond": beyond,
             "tightness_p50": statistics.median(ratios) if ratios else None, "tightness_max": max(ratios, default=None),
-            "compared": bounds.get("pixels", 0), "beyond_compared": bounds.get("beyond", 0),
+            "compared": sum(one.get("pixels", 0) for one in bounds), "beyond_compared": sum(one.get("beyond", 0) for one in bounds),
             "seconds": proven.ru_utime + proven.ru_stime, "seconds_uncertified": plain.ru_utime + plain.ru_stime}
 
 

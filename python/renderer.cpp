@@ -202,7 +202,7 @@ void bind_pictures(RendererClass& renderer) {
         "None: as the scene says.\n"
         "facets: \"worthwhile\" (those that it takes longer to probe than to follow the rays of their "
         "samples\nare traced) or \"all\" (none is for that); None: worthwhile.\n"
-        "certify: it is proven at each pixel's middle that what a mirror shows is off by at most max_error > "
+        "certify: it is proven at each pixel's middle that what optics show is off by at most max_error > "
         "0\n(layer \"bound\"); what is not proven is traced.\n"
         "shading: where pixels have several samples: \"fragment\" (once for those that see one triangle by "
         "one way,\nthe classic engine each) or \"sample\".\n"

@@ -98,9 +98,8 @@ std::vector<Option> facet_options(RenderOptions& options) {
         {.names = "--certify",
          .target = &options.certify,
          .help =
-             "prove at each pixel's middle that what a mirror shows is off by no more than --max-error "
-             "(layer "
-             "bound), and trace what is not proven: other optics than mirrors, and all further reflections"}};
+             "prove at each pixel's middle that what optics show is off by no more than --max-error (layer "
+             "bound), and trace what is not proven"}};
 }
 
 std::vector<Option> engine_options(RenderOptions& options) {

@@ -129,7 +129,7 @@ struct LayerComparison {
     std::string layer;  // "reflect", "refract", "direct"
     std::optional<SeenMismatch> seen;
     std::optional<Displacement> displacement;
-    std::optional<BoundCheck> bounds{};  // of "reflect", where the test has a channel "bound"
+    std::optional<BoundCheck> bounds{};  // of paths, where the test has a channel "bound"
 };
 
 /// The layers that the reference has. Throws InputError where the images cannot be compared.

@@ -46,7 +46,7 @@ std::vector<LayerComparison> compare_layers(const Image& reference, const Image&
     for (const char* name : {"reflect", "refract", "direct"}) {
         LayerComparison layer{name, compare_seen(reference, test, name, options.mask_object),
                               measure_displacement(reference, test, name, options)};
-        if (layer.displacement && layer.layer == "reflect")
+        if (layer.displacement && layer.layer != "direct" && layer.seen && layer.seen->pixels > 0)
             layer.bounds = check_bounds(reference, test, name, *layer.displacement);
         if (layer.seen) layers.push_back(std::move(layer));
     }

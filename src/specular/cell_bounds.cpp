@@ -1,4 +1,3 @@
-// Ball arithmetic: a vector known to lie within a radius of a middle.
 #include "specular/cell_bounds.h"
 
 #include <algorithm>
@@ -10,48 +9,17 @@
 namespace trilens {
 namespace {
 
-/// The ways between two balls are those from the one's middle to a ball of both radii, `radius`. False where
-/// the balls meet.
-bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight) {
-    const Vec3 way = to - from;
-    const double distance = length(way);
-    if (!(distance > radius)) return false;
-    sight.by_distance = 1 / distance;
-    sight.direction = way * sight.by_distance;
-    sight.sine = radius * sight.by_distance;
-    sight.turn = chord_of(sight.sine);
-    return true;
-}
-
-using Reach = CellTerms::Reach;
-
-/// The most that (a . Q b) / d changes, Q the projection across a sight of distance d.
-double turning_radius(const Sight& sight, double stretch, const Reach& a, const Reach& b) {
-    return stretch * a.all * b.all +
-           sight.by_distance * (a.radius * b.all + a.length * (sight.sine * b.all + b.radius));
-}
-
-double largest_coordinate(const Vec3& v) {
-    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
 Vec2 absolute_product(const Mat2& m, const Vec2& v) {
     return {std::fabs(m[0][0]) * v.x + std::fabs(m[1][0]) * v.y,
             std::fabs(m[0][1]) * v.x + std::fabs(m[1][1]) * v.y};
 }
 
-/// How h, or one of its parts, changes along a step: the direction of a sight turns by the step across it.
-Vec3 turned(const Sight& sight, double index, const Vec3& step) {
-    return index * sight.by_distance * (step - dot(sight.direction, step) * sight.direction);
-}
-
 /// What rounding leaves of the gradient at a zero, per length of the tangent.
 double rounding_of_law(const CellTerms& terms, const Sight& sight, const Vec3& point, double point_radius) {
-    constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
     const double coordinate = std::max(terms.coordinate, largest_coordinate(point) + point_radius);
     const double by_nearest = sight.by_distance + (point_radius > 0 ? sight.stretch() : 0);
-    return kRounding * (terms.n.eye * (1 + coordinate * terms.eye_by_distance) +
-                        terms.n.point * (1 + coordinate * by_nearest));
+    return rounding_of_way(terms.n.eye, terms.eye_by_distance, coordinate) +
+           rounding_of_way(terms.n.point, by_nearest, coordinate);
 }
 
 }  // namespace
@@ -115,19 +83,15 @@ PlaceTest test_place(const SpecularQuery& query, const PlaceBounds& place, const
 }
 
 CellTerms cell_terms(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view) {
-    const auto reach = [](const Vec3& v, double radius) {
-        const double size = length(v);
-        return CellTerms::Reach{size, size + radius, radius};
-    };
     const SurfacePoint& m = bounds.middle;
     CellTerms terms;
     terms.bounds = &bounds;
     terms.is_apart = view.is_apart;
-    terms.u = reach(m.du, bounds.du_radius);
-    terms.v = reach(m.dv, bounds.dv_radius);
-    terms.uu = reach(m.duu, bounds.duu_radius);
-    terms.uv = reach(m.duv, bounds.duv_radius);
-    terms.vv = reach(m.dvv, bounds.dvv_radius);
+    terms.u = Reach::of(m.du, bounds.du_radius);
+    terms.v = Reach::of(m.dv, bounds.dv_radius);
+    terms.uu = Reach::of(m.duu, bounds.duu_radius);
+    terms.uv = Reach::of(m.duv, bounds.duv_radius);
+    terms.vv = Reach::of(m.dvv, bounds.dvv_radius);
     terms.n = path_indices(query);
     const Sight& eye = view.sight;
     const double n = terms.n.eye, stretch = eye.stretch();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/raymesh/surface.h"
+#include "specular/chain/sight.h"
 #include "specular/specular_point.h"
 
 namespace trilens {
@@ -15,22 +16,6 @@ struct PlaceBounds {
 };
 
 PlaceBounds place_of(const SurfaceBounds& bounds);
-
-/// The chord 2 sin(angle / 2) of an angle is at most this, for all sines up to 1.
-inline double chord_of(double sine) {
-    return sine * (1 + 0.4143 * sine * sine);
-}
-
-/// Directions from one ball of places to another.
-struct Sight {
-    Vec3 direction{0};       // unit, from middle to middle
-    double turn = 0;         // no direction differs by more
-    double sine = 0;         // of the largest angle
-    double by_distance = 0;  // 1 / distance of the middles
-
-    /// No 1 / distance differs by more.
-    double stretch() const { return by_distance * sine / (1 - sine); }
-};
 
 /// How the query's eye sees a piece: the same for all points.
 struct EyeView {
@@ -77,12 +62,6 @@ bool leaves_cell(const NewtonBounds& newton, const Vec2& half);
 
 /// What newton_bounds works with that is the same for all points.
 struct CellTerms {
-    /// Of a tangent or second derivative: the length in the middle, the most anywhere, and how much it
-    /// changes.
-    struct Reach {
-        double length = 0, all = 0, radius = 0;
-    };
-
     const SurfaceBounds* bounds = nullptr;  // must live longer
     Reach u, v, uu, uv, vv;
     PathIndices n;

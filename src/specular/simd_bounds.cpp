@@ -135,8 +135,7 @@ struct Verdicts {
     Truth leaves, contracts, open, narrow;
 };
 
-HWY_INLINE Number turning_radius(const Sights& point, Number stretch, const CellTerms::Reach& a,
-                                 const CellTerms::Reach& b) {
+HWY_INLINE Number turning_radius(const Sights& point, Number stretch, const Reach& a, const Reach& b) {
     const Number along =
         hn::Add(number(a.radius * b.all + a.length * b.radius), scaled(a.length * b.all, point.sine));
     return hn::Add(scaled(a.all * b.all, stretch), hn::Mul(point.by_distance, along));
@@ -149,8 +148,7 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
     const Number bend_size = hn::Sqrt(dot(bend, bend));
     const Number bend_turn = hn::Add(number(cell.eye_turn), scaled(cell.n.point, point.turn));
     const Number stretch = hn::Div(hn::Mul(point.by_distance, point.sine), hn::Sub(number(1), point.sine));
-    const auto radius = [&](double eye, const CellTerms::Reach& a, const CellTerms::Reach& b,
-                            const CellTerms::Reach& second) {
+    const auto radius = [&](double eye, const Reach& a, const Reach& b, const Reach& second) {
         const Number turning =
             hn::Add(number(eye), scaled(cell.n.point, turning_radius(point, stretch, a, b)));
         return hn::Add(turning, hn::Add(scaled(second.all, bend_turn), scaled(second.radius, bend_size)));

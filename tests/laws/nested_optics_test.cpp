@@ -10,7 +10,7 @@
 #include "paths/trace/follow.h"
 #include "render/engines/engine.h"
 #include "render/picture/picture.h"
-#include "render/project/path_images.h"
+#include "render/frame/image_chain.h"
 #include "render/world/world.h"
 #include "support/test.h"
 

@@ -1,6 +1,6 @@
 #include "inverse/fit/fit_problem.h"
-#include "render/project/image_chain.h"
-#include "specular/path_chain.h"
+#include "render/frame/image_chain.h"
+#include "specular/chain/path_chain.h"
 
 namespace trilens {
 namespace {

@@ -1,31 +1,20 @@
 #include "render/engines/certify_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "base/math/box.h"
 #include "base/util/parallel.h"
 #include "camera/linear/linear_cameras.h"
-#include "specular/cell_bvh.h"
 
 namespace trilens {
 namespace {
 
 constexpr std::size_t kProofsPerTask = 256;
-constexpr double kFar = 1e9;          // times the size of what is seen: as good as infinitely far
-constexpr double kRoomPixels = 1e-6;  // for the rounding of film places
+constexpr double kRoomPixels = 1e-6;                // for the rounding of film places
 constexpr std::array kHalfSides{1e-7, 1e-5, 1e-3};  // of the boxes on which a proof is tried
-
-/// The box of parameters around a place, within the face's square.
-CellBox box_around(const SurfaceParameter& at, double half) {
-    return {at.face, glm::clamp(at.uv - half, 0.0, 1.0), glm::clamp(at.uv + half, 0.0, 1.0)};
-}
-
-/// Whether all of the box is the face's; a triangle ends at u + v = 1.
-bool is_inside(const Surface& surface, const CellBox& box) {
-    return surface.domain(box.face) == FaceDomain::kSquare || box.high.x + box.high.y <= 1;
-}
+constexpr double kUnproven = std::numeric_limits<double>::infinity();
 
 /// How far on the film points within `radius` of one that the camera sees at `pixel` may lie from there.
 double film_radius(const LinearCamera& camera, const Vec3& point, const Vec2& pixel, double radius) {
@@ -37,105 +26,117 @@ double film_radius(const LinearCamera& camera, const Vec3& point, const Vec2& pi
     return std::hypot(x, y) * radius / least;
 }
 
-/// Whether Krawczyk's operator maps the box into itself: there is one zero of the law in it then.
-bool has_one_zero(const NewtonBounds& newton, const Vec2& half) {
-    const Vec2 reach = glm::abs(newton.step) + newton.spread + newton.rounding + newton.shift;
-    return newton.known && reach.x < half.x && reach.y < half.y && newton.spread.x < 0.5 * half.x &&
-           newton.spread.y < 0.5 * half.y;
-}
-
-/// The only end of a sample, one reflection long.
-bool is_one_reflection(const PathEnds& ends, std::size_t end) {
-    const PathEnd& one = ends.ends[end];
-    return one.step_count == 1 && ends.steps[one.first_step].event == Event::kReflect;
+/// The colours of each stretch: light parts where it first goes through glass that disperses.
+void set_colours(const World& world, Colours colours, std::vector<PathSegment>& history) {
+    bool has_parted = false;
+    for (PathSegment& segment : history) {
+        const Material& material = world.scene.materials[world.optics[segment.step.optic].material];
+        has_parted = has_parted || (segment.step.event == Event::kTransmit && material.dispersion > 0);
+        segment.colours = has_parted ? colours : kAllColours;
+    }
 }
 
 }  // namespace
 
-SampleCertifier::SampleCertifier(const World& world, const Frame& frame, std::size_t optic)
-    : world_(world), frame_(frame), optic_(optic) {
-    const Optic& one = world.optics[optic];
-    if (!frame.camera.linear || !one.mirror || !has_own_normals(world.scene.meshes[one.mesh])) return;
-    Box box;
-    box.include(frame.camera.linear->eye);
-    for (const Vec3& point : frame.optics[optic].facets->grid().points) box.include(point);
-    size_ = length(box.size());
-    bounder_ = one.surface->make_bounder();
+SampleCertifier::SampleCertifier(const World& world, const Frame& frame) : world_(world), frame_(frame) {
+    for (const Optic& optic : world.optics) {
+        const bool is_own = frame.camera.linear && has_own_normals(world.scene.meshes[optic.mesh]);
+        bounders_.push_back(is_own ? optic.surface->make_bounder() : nullptr);
+    }
 }
 
-/// From the facet's own parameters; across a face's border, from where the sample's exact ray meets the
-/// surface.
-std::optional<SpecularPoint> SampleCertifier::image_of(const ReflectedSight& sight,
-                                                       const SpecularQuery& query) const {
-    const Surface& surface = *world_.optics[optic_].surface;
-    if (auto image = refine_specular_point(surface, sight.start, query)) return image;
-    const auto hit = limit_tracer(world_, optic_).first_hit(film_ray(*frame_.camera.linear, sight.pixel));
-    if (!hit) return std::nullopt;
-    return refine_specular_point(surface, SurfaceParameter{hit->face, hit->uv}, query);
+bool SampleCertifier::knows(std::span<const Step> steps) const {
+    return std::ranges::all_of(steps, [&](const Step& step) { return bounders_[step.optic] != nullptr; });
 }
 
-std::optional<double> SampleCertifier::displacement_bound(const ReflectedSight& sight) const {
-    if (!bounder_) return std::nullopt;
+/// Over one optic from the facet's own parameters. Else, and where these lead nowhere (across a face's
+/// border), from the sample's exact path over the same steps.
+std::optional<SolvedChain> SampleCertifier::path_of(const ProjectedSight& sight) const {
     const bool is_far = std::isinf(sight.t);
-    SpecularQuery query;
-    query.camera = *frame_.camera.linear;
-    query.viewed = sight.front ? ViewedSide::kFront : ViewedSide::kBack;
-    query.point = sight.ray.origin +
-                  (is_far ? kFar * size_ / length(sight.ray.direction) : sight.t) * sight.ray.direction;
-    const auto image = image_of(sight, query);
-    if (!image) return std::nullopt;
+    const ProjectedPoint shown{
+        is_far ? normalize(sight.ray.direction) : sight.ray.origin + sight.t * sight.ray.direction, is_far};
+    // One colour of light where glass parts it; where it does not, all have the index of `ior`.
+    const Colours colours = sight.colours;
+    if (sight.steps.size() == 1) {
+        const PathEvent event{sight.steps[0].optic, sight.steps[0].event, sight.front, sight.start.face,
+                              sight.start.uv};
+        if (auto path = solve_path(world_, frame_, {{&event, 1}, sight.pixel, colours}, shown)) return path;
+    }
+    HistoryQuery query = history_query(world_, frame_, sight.steps, shown.place);
+    set_colours(world_, colours, query.history);
+    const std::optional<HistoryPath> own = history_path(query, sight.pixel);
+    if (!own) return std::nullopt;
+    return solve_path(world_, frame_, {own->events, sight.pixel, colours}, shown);
+}
 
+/// Boxes of parameters around where a path meets its surfaces, cut at the borders of faces; none where one
+/// reaches over the side of a triangle.
+std::optional<ChainBox> SampleCertifier::box_around(const SolvedChain& path, std::span<const Step> steps,
+                                                    double half) const {
+    ChainBox box;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const SurfaceParameter& at = path.shape.at[i];
+        const Vec2 low = glm::clamp(at.uv - half, 0.0, 1.0), high = glm::clamp(at.uv + half, 0.0, 1.0);
+        const FaceDomain domain = world_.optics[steps[i].optic].surface->domain(at.face);
+        if (domain == FaceDomain::kTriangle && !(high.x + high.y <= 1)) return std::nullopt;
+        box.bounds.push_back(bounders_[steps[i].optic]->bounds(at.face, low, high));
+        box.half.push_back(0.5 * (high - low));
+    }
+    return box;
+}
+
+std::optional<double> SampleCertifier::displacement_bound(const ProjectedSight& sight) const {
+    if (!knows(sight.steps)) return std::nullopt;
+    const std::optional<SolvedChain> path = path_of(sight);
+    if (!path) return std::nullopt;
+    const LinearCamera& camera = *frame_.camera.linear;
     for (const double half_side : kHalfSides) {
-        const CellBox box = box_around(image->at, half_side);
-        if (!is_inside(*world_.optics[optic_].surface, box)) continue;
-        const SurfaceBounds bounds = bounder_->bounds(box.face, box.low, box.high);
-        // A direction's place at that distance from anywhere in the box instead of from the ray's start.
-        const double room =
-            is_far ? length(sight.ray.origin - bounds.middle.position) + bounds.position_radius : 0;
-        const CellTerms terms = cell_terms(query, bounds, eye_view(query, place_of(bounds)));
-        if (!has_one_zero(newton_bounds(terms, query.point, box.half(), room), box.half())) continue;
-        const Vec3 screen = screen_from_world(query.camera, bounds.middle.position);
+        const std::optional<ChainBox> box = box_around(*path, sight.steps, half_side);
+        if (!box || !holds_one_path(path->chain, *box)) continue;
+        const SurfaceBounds& first = box->bounds.front();
+        const Vec3 screen = screen_from_world(camera, first.middle.position);
+        if (!(screen.z > 0)) return std::nullopt;
         const Vec2 pixel = Vec2(screen) / screen.z;
         return length(pixel - sight.pixel) +
-               film_radius(query.camera, bounds.middle.position, pixel, bounds.position_radius) + kRoomPixels;
+               film_radius(camera, first.middle.position, pixel, first.position_radius) + kRoomPixels;
     }
     return std::nullopt;
 }
 
 void certify_samples(const CertifyParams& params, SampleViews& views, PathEnds& ends,
                      std::vector<Id>& traced) {
-    constexpr double kUnproven = std::numeric_limits<double>::infinity();
-    std::vector<Id> count(views.samples.size(), 0);
-    for (const Id s : ends.sample) ++count[s];
     std::vector<double> bound(ends.ends.size(), kUnproven);
     parallel_for(ends.ends.size(), kProofsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const SampleView& view = views.samples[ends.sample[i]];
-            if (count[ends.sample[i]] != 1 || view.nested > 0 || !is_one_reflection(ends, i)) continue;
             const OpticView& on_optic = views.on_optic(view);
             const PathEnd& end = ends.ends[i];
             const auto proven = params.certifier.displacement_bound(
-                {{params.facets.facet_face[view.facet], on_optic.uv},
+                {std::span(ends.steps).subspan(end.first_step, end.step_count),
+                 end.colours,
+                 {params.facets.facet_face[view.facet], on_optic.uv},
+                 on_optic.incidence.front,
                  params.grid.position(ends.sample[i]),
                  end.ray,
-                 end.hit.seen() ? end.hit.t : std::numeric_limits<double>::infinity(),
-                 on_optic.incidence.front});
+                 end.hit.seen() ? end.hit.t : std::numeric_limits<double>::infinity()});
             if (proven && *proven <= params.limit) bound[i] = *proven;
         }
     });
 
-    // Those without a bound give their ends back.
-    std::vector<char> is_traced(views.samples.size(), 0);
+    // A sample has the largest bound of its ends; those without one give all of them back.
+    std::vector<double> largest(views.samples.size(), 0);
+    for (std::size_t i = 0; i < ends.ends.size(); ++i)
+        largest[ends.sample[i]] = std::max(largest[ends.sample[i]], bound[i]);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < ends.ends.size(); ++i) {
         const Id sample = ends.sample[i];
-        if (bound[i] < kUnproven) {
-            views.of_optics[sample].bound = bound[i];
+        if (largest[sample] < kUnproven) {
+            views.of_optics[sample].bound = largest[sample];
             ends.ends[kept] = ends.ends[i];
             ends.sample[kept++] = sample;
-        } else if (!is_traced[sample]) {
-            is_traced[sample] = 1;
+        } else if (largest[sample] == kUnproven) {
             traced.push_back(sample);
+            largest[sample] = std::numeric_limits<double>::quiet_NaN();  // given back, once
         }
     }
     ends.ends.resize(kept);

@@ -90,9 +90,9 @@ class FacetViewer : public Viewer {
     std::optional<NestedStage> stage_;
 
     // What views work out, and later ones find.
-    std::vector<std::unique_ptr<NestedOptics>> nested_;         // per optic; null: it has none
-    std::vector<PathBuilder> paths_;                            // per optic
-    std::vector<std::unique_ptr<SampleCertifier>> certifiers_;  // per optic, where proofs are asked for
+    std::vector<std::unique_ptr<NestedOptics>> nested_;  // per optic; null: it has none
+    std::vector<PathBuilder> paths_;                     // per optic
+    std::optional<SampleCertifier> certifier_;           // where proofs are asked for
 };
 
 /// As comes_before has it.
@@ -283,8 +283,8 @@ void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
             {world_, static_cast<Id>(i), draw_paths_, draw_volumes_ ? &draw_volumes_ : nullptr,
              frame_.optics[i], nested_[i].get(), grid, part_in(grid, windows_[i])},
             paths_[i], views, traced));
-        if (certifiers_.empty()) continue;
-        certify_samples({*certifiers_[i], frame_.optics[i].facets->grid(), grid, frame_.max_error}, views,
+        if (!certifier_) continue;
+        certify_samples({*certifier_, frame_.optics[i].facets->grid(), grid, frame_.max_error}, views,
                         ends.back(), traced);
     }
     trace_each(traced, grid, views, ends);
@@ -301,8 +301,7 @@ void FacetViewer::make_paths(const EngineChoice& engine) {
                                  : make_approximate_paths(world_, frame_, i, engine.engine));
     }
     const bool has_limit = frame_.max_error > 0 && follows;
-    for (std::size_t i = 0; frame_.certify && follows && i < frame_.optics.size(); ++i)
-        certifiers_.push_back(std::make_unique<SampleCertifier>(world_, frame_, i));
+    if (frame_.certify && follows) certifier_.emplace(world_, frame_);
     rims_ = make_rims(world_, frame_, has_limit ? frame_.max_error : kAnyError);
 }
 

@@ -37,7 +37,7 @@ struct FrameParams {
     std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
     std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
     FacetUse facets = FacetUse::kAll;
-    // What mirrors show is proven to be off by no more than max_error, which is above 0; what is not, traced.
+    // What optics show is proven to be off by no more than max_error, which is above 0; what is not, traced.
     // Also where RenderSettings::certify says so.
     bool certify = false;
 
@@ -186,7 +186,7 @@ struct Picture {
 /// "stat", "magnification" (which goes with a path's own layer), "position" (directID and directP: what the
 /// camera sees itself, where no optic is first), "ray" (reflectD and reflectO, refractD and refractO: the
 /// last ray's unit direction and its origin, world frame; with a path's own layer), "bound" (pixels: by
-/// how much what a mirror shows is displaced at most, where that is proven; 0 where it is traced, or not
+/// how much what an optic shows is displaced at most, over all its paths, where that is proven; 0 where it is traced, or not
 /// asked) and "coverage" (the mesh that the pixel's centre shows first, and between which shares of the pixel
 /// the camera sees it, as is proven for every place in it; 0 and 1 say nothing).
 const std::vector<std::string>& layer_names();

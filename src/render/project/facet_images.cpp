@@ -5,7 +5,7 @@
 
 #include "base/raymesh/sample_grid.h"
 #include "render/frame/camera_rays.h"
-#include "render/project/image_chain.h"
+#include "render/project/image_light.h"
 #include "render/project/point_projector.h"
 
 namespace trilens {
@@ -223,7 +223,8 @@ OpticImage on_film_image(const HistoryImage& exact, OpticImage image) {
 void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
                                     std::vector<OpticImage>& images) const {
     const Event event = path.path == Path::kReflect ? Event::kReflect : Event::kTransmit;
-    const HistoryQuery query = history_query(world_, frame_, {{path.optic, event}}, point);
+    const Step step{path.optic, event};
+    const HistoryQuery query = history_query(world_, frame_, {&step, 1}, point);
     std::vector<OpticImage> kept;
     for (OpticImage image : images) {
         const auto exact = refine_history_image(query, image.pixel);

@@ -1,4 +1,4 @@
-#include "render/project/image_chain.h"
+#include "render/project/image_light.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
-#include "render/project/image_chain.h"
+#include "render/project/image_light.h"
 #include "render/world/world.h"
 #include "specular/specular_point.h"
 
@@ -96,30 +96,6 @@ std::vector<Id> facets_in_view(const PathBuilder& paths, const SurfaceGrid& grid
     return seen;
 }
 
-}  // namespace
-
-HistoryQuery history_query(const World& world, const Frame& frame, const std::vector<Step>& steps,
-                           const Vec3& point) {
-    HistoryQuery query;
-    query.world = &path_world(world);
-    query.camera_ray = [&camera = frame.camera](const Vec2& pixel) {
-        return exact_ray(camera, pixel).value_or(Ray{});
-    };
-    if (!frame.camera_media.none())
-        query.around = [&frame](const Ray& ray) { return frame.camera_media.of(ray); };
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        PathSegment segment;
-        segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);
-        segment.step = steps[i];
-        segment.ends = i + 1 == steps.size();
-        query.history.push_back(segment);
-    }
-    query.point = point;
-    return query;
-}
-
-namespace {
-
 /// Paths as deep as the word goes, those alone that may begin it.
 PathWorld world_of_word(const World& world, const EventWord& word) {
     PathWorld paths = path_world(world);
@@ -159,7 +135,7 @@ void SeveralOpticsImages::drop_histories() {
 std::optional<HistoryImage> SeveralOpticsImages::refine(const HistoryQuery& query, const Vec2& start) const {
     const std::optional<HistoryPath> path = history_path(query, start);
     if (!path) return std::nullopt;
-    if (const auto solved = solve_image(world_, frame_, path->events, {query.point}, start)) {
+    if (const auto solved = solve_image(world_, frame_, {path->events, start}, {query.point})) {
         std::optional<HistoryImage> image = history_image_at(query, solved->film.pixel);
         if (image && solved->is_regular) {
             image->derivative = solved->derivative;

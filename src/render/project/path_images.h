@@ -93,10 +93,6 @@ class SeveralOpticsImages {
     std::map<HistoryEnd, std::size_t> history_at_;
 };
 
-/// The exact image over one history, from a first guess; see refine_history_image.
-HistoryQuery history_query(const World& world, const Frame& frame, const std::vector<Step>& steps,
-                           const Vec3& point);
-
 // Where a point appears through the facets of one optic, each image then refined on the exact surface.
 
 /// An image of a point over one optic, before anything asks what hides it.

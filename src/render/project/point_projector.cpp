@@ -6,7 +6,7 @@
 
 #include "base/math/box.h"
 #include "reflect/reflection.h"
-#include "render/project/image_chain.h"
+#include "render/project/image_light.h"
 
 namespace trilens {
 namespace {
@@ -97,7 +97,7 @@ bool PointProjector::on_film(const Vec2& pixel) const {
 
 /// By the chain of the image's surfaces; where the camera has no eye, by the exact paths around the image.
 void PointProjector::differentiate(WorldImage& image, const ProjectedPoint& point) const {
-    if (const auto solved = solve_image(world_, frame_, image.events, point, image.pixel)) {
+    if (const auto solved = solve_image(world_, frame_, {image.events, image.pixel}, point)) {
         if (!solved->is_regular || length(solved->film.pixel - image.pixel) > kSamePixels) return;
         image.has_derivative = true;
         image.derivative = solved->derivative;
@@ -123,7 +123,7 @@ void PointProjector::move_to(const ProjectedPoint& point, PointProjection& resul
     for (WorldImage& image : result.images) {
         if (image.path == Path::kDirect) continue;
         image.has_derivative = false;
-        const auto solved = solve_image(world_, frame_, image.events, point, image.pixel);
+        const auto solved = solve_image(world_, frame_, {image.events, image.pixel}, point);
         if (!solved || length(solved->film.pixel - image.pixel) > kMostMove) {
             image.refined = false;
             image.off = kUnknownOffset;

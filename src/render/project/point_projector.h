@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/frame/frame.h"
-#include "render/project/image_chain.h"
+#include "render/project/image_light.h"
 #include "render/project/path_images.h"
 #include "render/project/project.h"
 #include "specular/specular_search.h"

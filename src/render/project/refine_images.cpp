@@ -5,7 +5,7 @@
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "render/frame/camera_rays.h"
-#include "render/project/image_chain.h"
+#include "render/project/image_light.h"
 #include "render/project/project.h"
 
 namespace trilens {
@@ -130,7 +130,7 @@ std::optional<WorldImage> ImageRefiner::refine_chain(const ImageStart& start, co
     const Vec3 there = world_.optics[first.optic].surface->eval(first.face, first.uv).position;
     const std::vector<FilmImage> seen = film_positions(frame_.camera, there);
     const auto solved =
-        solve_image(world_, frame_, start.events, {point}, seen.empty() ? Vec2(0) : seen.front().pixel);
+        solve_image(world_, frame_, {start.events, seen.empty() ? Vec2(0) : seen.front().pixel}, {point});
     if (!solved) return std::nullopt;
     const std::optional<Ray> view = exact_ray(frame_.camera, solved->film.pixel);
     const std::optional<Vec3> weight = view ? weight_of(solved->events, *view, point) : std::nullopt;

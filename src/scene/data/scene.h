@@ -143,7 +143,7 @@ struct RenderSettings {
     double max_error = 0;    // pixels of displacement that facets are divided for; 0: only where they lie
     int rough_samples = 16;  // ways of light over rough optics: of each fragment that is projected
     int rough_truth_samples = 128;  // of each pixel that is traced
-    bool certify = false;           // mirrors' facets are held to max_error by proof, which is then above 0
+    bool certify = false;           // optics' facets are held to max_error by proof, which is then above 0
 };
 
 /// A file as it was when it was read.

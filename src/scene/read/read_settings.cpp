@@ -134,7 +134,7 @@ const std::vector<Field<RenderSettings>>& render_fields() {
                     "The same of each pixel that is traced, shared among its samples; each is a ray."),
             setting(
                 "certify", &RenderSettings::certify, yes_or_no(),
-                "It is proven at each pixel's middle that what a mirror shows is off by at most 'maxError', "
+                "It is proven at each pixel's middle that what optics show is off by at most 'maxError', "
                 "which is above 0; what is not proven is traced.")};
     }();
     return fields;

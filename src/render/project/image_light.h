@@ -11,11 +11,11 @@
 #include "base/math/vec.h"
 #include "paths/trace/follow.h"
 #include "render/frame/frame.h"
+#include "render/frame/image_chain.h"
 #include "render/project/path_images.h"
 #include "render/project/project.h"
 #include "render/world/world.h"
 #include "scene/parameters.h"
-#include "specular/path_chain.h"
 
 namespace trilens {
 
@@ -46,63 +46,6 @@ class OcclusionQueries {
     const Frame& frame_;
     bool exact_;
 };
-
-// An image's path as a chain that Fermat's principle rules: solved from a start, and projected to the film.
-
-/// A point of the world, or one at infinity in a direction (unit, from the scene).
-struct ProjectedPoint {
-    Vec3 place{0};
-    bool is_direction = false;
-};
-
-/// What a chain depends on beside its path: the camera, the surfaces and the glass of a scene.
-struct ChainModel {
-    const Scene* scene = nullptr;
-    const Camera* camera = nullptr;
-    std::span<const Surface* const> surfaces;  // per optic
-    std::span<const Id> materials;             // per optic
-};
-
-/// Per event the body of glass before it and behind it; kNone: air.
-struct EventMedia {
-    Id before = kNone, after = kNone;
-};
-
-/// Which media a path of the camera goes through; none where they cannot be told.
-std::optional<std::vector<EventMedia>> event_media(const World& world, const Media& around,
-                                                   std::span<const PathEvent> events);
-
-/// Where all paths of a camera begin: its eye, or the direction of parallel rays; none where it has neither.
-std::optional<ChainEnd> chain_eye(const Camera& camera);
-
-/// The chain of a path; none for cameras whose rays meet in no eye and are not parallel. Where glass
-/// disperses the indices are green's, but those of its `ior` where the path has one event.
-std::optional<PathChain> make_chain(const ChainModel& model, std::span<const PathEvent> events,
-                                    std::span<const EventMedia> media, const ProjectedPoint& point);
-
-/// How a camera shows a place: the pixel next to `near`, and how it moves with the place (rows x, y: pixels
-/// per scene unit); none where it shows it nowhere.
-struct FilmPlace {
-    Vec2 pixel{0};
-    std::array<Vec3, 2> slope{};
-};
-std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, const Vec2& near);
-/// Its pixel alone.
-std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near);
-
-/// The path of light near a start, as events on the surfaces (their points and normals set anew); and the
-/// place of the film that shows it. Steps from face to face follow the optics' exact surfaces.
-struct ChainImage {
-    std::vector<PathEvent> events;
-    FilmPlace film;
-    /// How the pixel moves with the point: pixels per scene unit, of a direction per radian across it; zero
-    /// at a caustic.
-    std::array<Vec3, 2> derivative{};
-    bool is_regular = true;  // not at a caustic
-};
-std::optional<ChainImage> solve_image(const World& world, const Frame& frame,
-                                      std::span<const PathEvent> start, const ProjectedPoint& point,
-                                      const Vec2& near);
 
 // How much of a point's light an image carries: Fresnel, tint and absorption along its whole path.
 

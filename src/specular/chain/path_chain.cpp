@@ -1,4 +1,4 @@
-#include "specular/path_chain.h"
+#include "specular/chain/path_chain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,10 +107,14 @@ bool chain_sides_fit(const PathChain& chain, const ChainBend& bend, std::span<co
     return true;
 }
 
-ChainHessian::ChainHessian(const PathChain& chain, const ChainBend& bend,
-                           std::span<const SurfacePoint> points)
-    : size_(2 * points.size()), matrix_(size_ * size_, 0.0), pivot_(size_) {
+std::vector<double> chain_second_derivatives(const PathChain& chain, const ChainBend& bend,
+                                             std::span<const SurfacePoint> points) {
     TRILENS_CHECK(points.size() == chain.events.size(), "a point for each event");
+    const std::size_t size = 2 * points.size();
+    std::vector<double> matrix(size * size, 0.0);
+    const auto at = [&](std::size_t row, std::size_t column) -> double& {
+        return matrix[row * size + column];
+    };
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint& p = points[i];
         const Vec3 tangent[2] = {p.du, p.dv};
@@ -129,6 +133,12 @@ ChainHessian::ChainHessian(const PathChain& chain, const ChainBend& bend,
                 at(2 * i + 2 + b, 2 * i + a) = at(2 * i + a, 2 * i + 2 + b) = -dot(next, other[b]);
         }
     }
+    return matrix;
+}
+
+ChainHessian::ChainHessian(const PathChain& chain, const ChainBend& bend,
+                           std::span<const SurfacePoint> points)
+    : size_(2 * points.size()), matrix_(chain_second_derivatives(chain, bend, points)), pivot_(size_) {
     factor();
 }
 

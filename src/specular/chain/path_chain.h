@@ -56,7 +56,12 @@ std::vector<Vec2> chain_law(const ChainBend& bend, std::span<const SurfacePoint>
 /// The largest part of a bend that lies along its surface: 0 for light; in 0 .. n_before + n_after.
 double chain_residual(const ChainBend& bend, std::span<const SurfacePoint> points);
 
-/// The second derivatives of the optical path in the events' parameters, block tridiagonal, factored.
+/// The second derivatives of the optical path in the events' parameters, two per event: a full matrix, row by
+/// row, symmetric and block tridiagonal.
+std::vector<double> chain_second_derivatives(const PathChain& chain, const ChainBend& bend,
+                                             std::span<const SurfacePoint> points);
+
+/// chain_second_derivatives(), factored.
 /// Solves A x = b by Gaussian elimination with partial pivoting inside the band.
 class ChainHessian {
   public:

@@ -1,7 +1,8 @@
-#include "render/project/image_chain.h"
+#include "render/frame/image_chain.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/frame/camera_rays.h"
 #include "shade/optic_weights.h"
@@ -66,7 +67,7 @@ std::optional<PathChain> make_chain(const ChainModel& model, std::span<const Pat
     PathChain chain;
     chain.eye = *eye;
     chain.point = {point.place, point.is_direction};
-    const int colour = events.size() > 1 ? 1 : -1;
+    const int colour = model.colours.value_or(events.size() > 1 ? 1 : -1);
     for (std::size_t i = 0; i < events.size(); ++i)
         chain.events.push_back({model.surfaces[events[i].optic], index_of(model, media[i].before, colour),
                                 index_of(model, media[i].after, colour), events[i].event == Event::kReflect});
@@ -112,135 +113,82 @@ std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, con
     return found;
 }
 
-std::optional<ChainImage> solve_image(const World& world, const Frame& frame,
-                                      std::span<const PathEvent> start, const ProjectedPoint& point,
-                                      const Vec2& near) {
-    if (start.empty()) return std::nullopt;
+HistoryQuery history_query(const World& world, const Frame& frame, std::span<const Step> steps,
+                           const Vec3& point) {
+    HistoryQuery query;
+    query.world = &path_world(world);
+    query.camera_ray = [&camera = frame.camera](const Vec2& pixel) {
+        return exact_ray(camera, pixel).value_or(Ray{});
+    };
+    if (!frame.camera_media.none())
+        query.around = [&frame](const Ray& ray) { return frame.camera_media.of(ray); };
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        PathSegment segment;
+        segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);
+        segment.step = steps[i];
+        segment.ends = i + 1 == steps.size();
+        query.history.push_back(segment);
+    }
+    query.point = point;
+    return query;
+}
+
+std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, const ChainStart& start,
+                                      const ProjectedPoint& point) {
+    if (start.events.empty()) return std::nullopt;
     std::vector<const Surface*> surfaces;
     std::vector<Id> materials;
-    const ChainModel model = model_of(world, frame, surfaces, materials);
+    ChainModel model = model_of(world, frame, surfaces, materials);
+    model.colours = start.colours;
     Media around;
     if (!frame.camera_media.none()) {
-        const std::optional<Ray> view = exact_ray(frame.camera, near);
+        const std::optional<Ray> view = exact_ray(frame.camera, start.pixel);
         if (!view) return std::nullopt;
         around = frame.camera_media.of(*view);
     }
-    const auto media = event_media(world, around, start);
-    const auto chain = media ? make_chain(model, start, *media, point) : std::nullopt;
+    const auto media = event_media(world, around, start.events);
+    const auto chain = media ? make_chain(model, start.events, *media, point) : std::nullopt;
     if (!chain) return std::nullopt;
 
     std::vector<SurfaceParameter> at;
-    for (const PathEvent& event : start) at.push_back({event.face, event.uv});
+    for (const PathEvent& event : start.events) at.push_back({event.face, event.uv});
     const auto find = [&](std::size_t event, const Vec3& from,
                           const Vec3& towards) -> std::optional<SurfaceParameter> {
-        const LimitTracer& tracer = limit_tracer(world, start[event].optic);
+        const LimitTracer& tracer = limit_tracer(world, start.events[event].optic);
         const Ray ray{from, towards - from};
         const auto hit = tracer.first_hit(ray, event == 0 ? 0 : tracer.self_hit_t_min(ray));
         if (!hit) return std::nullopt;
         return SurfaceParameter{hit->face, hit->uv};
     };
-    const std::optional<ChainShape> shape = solve_chain(*chain, at, find);
+    std::optional<ChainShape> shape = solve_chain(*chain, at, find);
     if (!shape) return std::nullopt;
-
-    ChainImage image;
-    image.events.assign(start.begin(), start.end());
     const ChainBend bend = chain_bend(*chain, shape->points);
-    for (std::size_t i = 0; i < start.size(); ++i) {
-        const SurfacePoint& p = shape->points[i];
-        PathEvent& event = image.events[i];
-        event.face = shape->at[i].face;
-        event.uv = shape->at[i].uv;
-        event.point = p.position;
-        event.normal = p.normal;
-        if ((dot(bend.way[i], p.normal) <= 0) != event.front) return std::nullopt;
+    for (std::size_t i = 0; i < shape->points.size(); ++i)
+        if ((dot(bend.way[i], shape->points[i].normal) <= 0) != start.events[i].front) return std::nullopt;
+    return SolvedChain{*chain, std::move(*shape)};
+}
+
+std::optional<ChainImage> solve_image(const World& world, const Frame& frame, const ChainStart& start,
+                                      const ProjectedPoint& point) {
+    const std::optional<SolvedChain> solved = solve_path(world, frame, start, point);
+    if (!solved) return std::nullopt;
+    const ChainShape& shape = solved->shape;
+    ChainImage image;
+    image.events.assign(start.events.begin(), start.events.end());
+    for (std::size_t i = 0; i < shape.points.size(); ++i) {
+        image.events[i].face = shape.at[i].face;
+        image.events[i].uv = shape.at[i].uv;
+        image.events[i].point = shape.points[i].position;
+        image.events[i].normal = shape.points[i].normal;
     }
-    const auto film = film_place(frame.camera, image.events.front().point, near);
+    const auto film = film_place(frame.camera, image.events.front().point, start.pixel);
     if (!film) return std::nullopt;
     image.film = *film;
 
-    const PathSensitivity sensitivity(*chain, shape->points, image.film.slope);
+    const PathSensitivity sensitivity(solved->chain, shape.points, image.film.slope);
     image.is_regular = sensitivity.is_regular();
     image.derivative = sensitivity.by_point();
     return image;
-}
-
-namespace {
-
-Vec3 transmittance(const Material* glass, double way) {
-    return glass ? volume_transmittance(*glass, way) : Vec3(1);
-}
-
-/// Cosine of the angle of incidence of light that goes along `in` to the optic and along `out` from it.
-double incidence_cosine(Path path, const Vec3& in, const Vec3& out, double eta) {
-    if (path == Path::kReflect) return std::sqrt(std::clamp((1 - dot(in, out)) / 2, 0.0, 1.0));
-    const Vec3 normal = normalize_or_zero(eta * in - out);  // Snell: n1 in - n2 out is along the normal
-    return std::clamp(std::fabs(dot(in, normal)), 0.0, 1.0);
-}
-
-}  // namespace
-
-Vec3 weight_over_one(const World& world, const Frame& frame, const OneEventWay& way) {
-    const Optic& optic = world.optics[way.optic];
-    const Media around = frame.camera_media.none() ? Media() : frame.camera_media.of(way.view);
-    const Vec3 to_optic = way.from - way.view.origin, on = way.point - way.from;
-    const Vec3 in = normalize_or_zero(way.view.direction), out = normalize_or_zero(on);
-    const Material* before = glass_around(world, around);
-    const Vec3 arriving = transmittance(before, length(to_optic));
-    if (optic.mirror) {
-        const double cosine = incidence_cosine(Path::kReflect, in, out, 1);
-        const Material& metal = world.scene.materials[optic.material];
-        return arriving * optic_weights(metal, {cosine, way.front}, world.scene.render.fresnel).reflect *
-               transmittance(before, length(on));
-    }
-    const GlassInterface glass = interface_of(world, way.optic, around, way.front);
-    const double cosine = incidence_cosine(way.path, in, out, eta_of(glass, -1));
-    const OpticWeights weights = interface_weights(glass, cosine, world.scene.render.fresnel);
-    return way.path == Path::kReflect ? arriving * weights.reflect * transmittance(glass.before, length(on))
-                                      : arriving * weights.refract * transmittance(glass.after, length(on));
-}
-
-Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, double way) {
-    if (frame.camera_media.none()) return Vec3(1);
-    return transmittance(glass_around(world, frame.camera_media.of(view)), way);
-}
-
-namespace {
-
-/// A segment is free if what it meets lies within this share of its ends.
-constexpr double kSightFreeShare = 1e-6;
-
-}  // namespace
-
-bool OcclusionQueries::is_free_of_objects(const Vec3& from, const Vec3& to) const {
-    return !object_tracer(world_).occluded({from, to - from}, kSightFreeShare, 1 - kSightFreeShare);
-}
-
-bool OcclusionQueries::is_free_of_facets(const Ray& segment, std::size_t optic) const {
-    return !frame_.optics[optic].facets->tracer().occluded(segment, kSightFreeShare, 1 - kSightFreeShare);
-}
-
-bool OcclusionQueries::is_free_of_surface(const Ray& segment, std::size_t optic) const {
-    return !limit_tracer(world_, optic).meets(segment, kSightFreeShare, 1 - kSightFreeShare);
-}
-
-bool OcclusionQueries::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
-    const Ray segment{from, to - from};
-    return exact_ ? is_free_of_surface(segment, optic) : is_free_of_facets(segment, optic);
-}
-
-bool OcclusionQueries::sees(const Vec3& from, const Vec3& to, Id on_facet) const {
-    if (!is_free_of_objects(from, to)) return false;
-    const Ray segment{from, to - from};
-    for (std::size_t i = 0; i < world_.optics.size(); ++i)
-        if (i == on_facet ? !is_free_of_facets(segment, i) : !is_free_of_optic(from, to, i)) return false;
-    return true;
-}
-
-bool OcclusionQueries::goes_straight(const Vec3& from, const Vec3& to, Id on_facet) const {
-    const Ray segment{from, to - from};
-    for (std::size_t i = 0; i < world_.optics.size(); ++i)
-        if (i == on_facet ? !is_free_of_facets(segment, i) : !is_free_of_surface(segment, i)) return false;
-    return true;
 }
 
 }  // namespace trilens

@@ -1,0 +1,96 @@
+// An image's path as a chain that Fermat's principle rules: solved from a start, and projected to the film.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "paths/trace/follow.h"
+#include "render/frame/frame.h"
+#include "render/world/world.h"
+#include "specular/chain/path_chain.h"
+
+namespace trilens {
+
+/// A point of the world, or one at infinity in a direction (unit, from the scene).
+struct ProjectedPoint {
+    Vec3 place{0};
+    bool is_direction = false;
+};
+
+/// What a chain depends on beside its path: the camera, the surfaces and the glass of a scene.
+struct ChainModel {
+    const Scene* scene = nullptr;
+    const Camera* camera = nullptr;
+    std::span<const Surface* const> surfaces;  // per optic
+    std::span<const Id> materials;             // per optic
+    // Whose index is taken where glass disperses; none: green's, but that of `ior` where the path has one
+    // event.
+    std::optional<Colours> colours{};
+};
+
+/// Per event the body of glass before it and behind it; kNone: air.
+struct EventMedia {
+    Id before = kNone, after = kNone;
+};
+
+/// Which media a path of the camera goes through; none where they cannot be told.
+std::optional<std::vector<EventMedia>> event_media(const World& world, const Media& around,
+                                                   std::span<const PathEvent> events);
+
+/// Where all paths of a camera begin: its eye, or the direction of parallel rays; none where it has neither.
+std::optional<ChainEnd> chain_eye(const Camera& camera);
+
+/// The chain of a path; none for cameras whose rays meet in no eye and are not parallel.
+std::optional<PathChain> make_chain(const ChainModel& model, std::span<const PathEvent> events,
+                                    std::span<const EventMedia> media, const ProjectedPoint& point);
+
+/// How a camera shows a place: the pixel next to `near`, and how it moves with the place (rows x, y: pixels
+/// per scene unit); none where it shows it nowhere.
+struct FilmPlace {
+    Vec2 pixel{0};
+    std::array<Vec3, 2> slope{};
+};
+std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, const Vec2& near);
+/// Its pixel alone.
+std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near);
+
+/// The question how the camera's ray at a place of the film goes over these steps, and where near it the
+/// point is seen so; see refine_history_image.
+HistoryQuery history_query(const World& world, const Frame& frame, std::span<const Step> steps,
+                           const Vec3& point);
+
+/// Where a path of light is looked for.
+struct ChainStart {
+    std::span<const PathEvent> events;  // of each the optic, what happens, the side, the face and the place
+    Vec2 pixel{0};                      // about where the film shows it
+    std::optional<Colours> colours{};   // ChainModel's
+};
+
+/// A path of light, and where it meets each surface.
+struct SolvedChain {
+    PathChain chain;
+    ChainShape shape;
+};
+
+/// The path of light near a start, with the start's events on the same sides. Steps from face to face follow
+/// the optics' exact surfaces.
+std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, const ChainStart& start,
+                                      const ProjectedPoint& point);
+
+/// The same as events on the surfaces (their points and normals set anew); and the place of the film that
+/// shows it.
+struct ChainImage {
+    std::vector<PathEvent> events;
+    FilmPlace film;
+    /// How the pixel moves with the point: pixels per scene unit, of a direction per radian across it; zero
+    /// at a caustic.
+    std::array<Vec3, 2> derivative{};
+    bool is_regular = true;  // not at a caustic
+};
+std::optional<ChainImage> solve_image(const World& world, const Frame& frame, const ChainStart& start,
+                                      const ProjectedPoint& point);
+
+}  // namespace trilens
