@@ -151,6 +151,19 @@ void require_measured(const Image& a, const Image& b) {
             "what a and b show differs otherwise than what b and a do");
 }
 
+/// What facets show lies within the bounds that are proven of it.
+void require_proofs(const Renderer& renderer, const Image& truth) {
+    PictureRequest request = picture(0);
+    request.frame.max_error = 0.5;
+    request.frame.certify = true;
+    request.frame.facets = FacetUse::kAll;
+    const Picture proven = renderer.draw(request);
+    require(proven.statistics.certified_error <= 0.5, "a proven pixel is off by more than was asked for");
+    for (const LayerComparison& layer : compare_layers(truth, proven.image))
+        require(!layer.bounds || layer.bounds->beyond == 0,
+                "a pixel shows something farther off than is proven, " + layer.layer);
+}
+
 void require_laws(const RandomScene& random, std::string_view bytes) {
     const Scene scene = parse_scene(random.json);
     const Renderer renderer(scene);
@@ -166,7 +179,9 @@ void require_laws(const RandomScene& random, std::string_view bytes) {
 
     PictureRequest exact = request;
     exact.engine = Engine::kLimitTruth;
-    require_light(renderer.draw(exact).image, random.is_unlit);
+    const Image truth = renderer.draw(exact).image;
+    require_light(truth, random.is_unlit);
+    require_proofs(renderer, truth);
     const trilens_test::Agreement agreement = trilens_test::compare_engines(renderer.world());
     require(agreement.off_edge == 0,
             "the projector and the rays of its facets differ off edges: " + agreement.first_off_edge);

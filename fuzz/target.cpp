@@ -15,9 +15,10 @@ namespace {
 
 constexpr std::array kTargets{
     FuzzTarget{"animation", "a scene with keyframes, at a frame", scene_animation},
+    FuzzTarget{"caustics", "random scenes, their lights followed over optics", random_caustics, true},
     FuzzTarget{"exr", "a picture that is measured and written again", exr_file},
     FuzzTarget{"gltf", "glTF, text or binary, as a scene", gltf_file},
-    FuzzTarget{"laws", "random scenes, drawn and held against the laws", random_scene},
+    FuzzTarget{"laws", "random scenes, drawn and held against the laws", random_scene, true},
     FuzzTarget{"lens", "a lens file of an optics program", lens_text},
     FuzzTarget{"mtl", "materials of an OBJ", mtl_text},
     FuzzTarget{"nrrd", "a volume on a regular grid", nrrd_text},
@@ -28,6 +29,7 @@ constexpr std::array kTargets{
     FuzzTarget{"run", "a sweep's folder: manifest, plan, a run", run_folder},
     FuzzTarget{"scene", "a scene file", scene_text},
     FuzzTarget{"sweep", "a sweep file", sweep_file},
+    FuzzTarget{"terrain", "random heights, as triangles", random_terrain, true},
     FuzzTarget{"test", "a regression test's test.json", test_file},
     FuzzTarget{"vtk", "a volume in cells", vtk_text},
     FuzzTarget{"wish", "the wish of a freeform mirror", wish_text},

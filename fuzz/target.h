@@ -28,6 +28,7 @@ struct FuzzTarget {
     std::string_view what;  // it reads, for the list
     /// Throws Defect, or what else was never to be thrown.
     Answer (*run)(std::string_view bytes);
+    bool makes = false;  // bytes are choices of what is made: none are refused
 };
 
 /// All of them, in the order of their names.
@@ -67,6 +68,8 @@ Answer sweep_file(std::string_view bytes);
 Answer test_file(std::string_view bytes);
 Answer run_folder(std::string_view bytes);
 Answer random_scene(std::string_view bytes);
+Answer random_caustics(std::string_view bytes);
+Answer random_terrain(std::string_view bytes);
 
 /// A folder of this process' own for the files that targets read, in memory where the system has that.
 const std::string& fuzz_folder();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -139,7 +140,8 @@ class Gatherer {
     }
 
     /// The part where `coordinate` is at most `most`. A side is cut from its lower end, so that both its
-    /// triangles have the same corner there.
+    /// triangles have the same corner there. Sides run along rows, columns and diagonals, so that they cross
+    /// the last column and row at samples' places: rounded, to lie exactly there.
     static Polygon cut(const Polygon& polygon, double GridPlace::*coordinate, double most) {
         Polygon kept;
         for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -150,11 +152,9 @@ class Gatherer {
                             &high = a.*coordinate < b.*coordinate ? b : a;
             if (low.*coordinate == most) continue;  // that end is kept
             const double t = (most - low.*coordinate) / (high.*coordinate - low.*coordinate);
-            GridPlace crossing{low.column + t * (high.column - low.column),
-                               low.row + t * (high.row - low.row),
-                               low.height + t * (high.height - low.height)};
-            crossing.*coordinate = most;
-            kept.push_back(crossing);
+            kept.push_back({std::round(low.column + t * (high.column - low.column)),
+                            std::round(low.row + t * (high.row - low.row)),
+                            low.height + t * (high.height - low.height)});
         }
         return kept;
     }
@@ -163,6 +163,12 @@ class Gatherer {
         Polygon polygon{place_of(triangle[0]), place_of(triangle[1]), place_of(triangle[2])};
         polygon = cut(polygon, &GridPlace::column, heights_.last_column());
         polygon = cut(polygon, &GridPlace::row, heights_.last_row());
+        // A corner at which both cuts meet comes twice.
+        const auto same = [](const GridPlace& a, const GridPlace& b) {
+            return a.column == b.column && a.row == b.row;
+        };
+        polygon.erase(std::unique(polygon.begin(), polygon.end(), same), polygon.end());
+        while (polygon.size() > 1 && same(polygon.front(), polygon.back())) polygon.pop_back();
         if (polygon.size() < 3) return;
         std::vector<Id> ids;
         for (const GridPlace& place : polygon) ids.push_back(id_of(place));
