@@ -19,7 +19,7 @@ import statistics
 import sys
 import tempfile
 
-from timed_command import run
+from timed_command import run, without_caustics
 
 FIELDS = ["scene", "optic_pixels", "certified_percent", "traced_percent", "largest_bound", "projected", "beyond", "tightness_p50",
           "tightness_max", "compared", "beyond_compared", "seconds", "seconds_uncertified"]
@@ -74,11 +74,7 @@ def name_of(options, scene):
 
 def row_of(options, scene, folder):
     truth, image = str(folder / "truth.exr"), str(folder / "image.exr")
-    import trilens
-    lights = trilens.load_scene(scene, warn=lambda _: None).to_dict().get("lights", [])
-    # Caustics shine on what is seen, and are no part of where it is.
-    dark = [word for i, light in enumerate(lights) if light.get("caustics") for word in ("--set", f"/lights/{i}/caustics=false")]
-    view = [str(scene), "--size", options.size, "-t", "1", *dark]
+    view = [str(scene), "--size", options.size, "-t", "1", *without_caustics(scene)]
     draw = [options.trilens, "render", *view, "--spp", "1", "-o", image, "--max-error", str(options.error), "--facets", "all", "--aov", "all"]
     _, plain = run(draw)
     picture, proven = run([*draw, "--certify"])

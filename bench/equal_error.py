@@ -14,21 +14,14 @@ import pathlib
 import sys
 import tempfile
 
-from timed_command import run
+from timed_command import run, without_caustics
 
 FIELDS = ["scene", "flip_rendered", "flip_traced", "mean_difference", "seconds_rendered", "seconds_traced"]
 
 
-def dark_words(scene):
-    """Options that turn the scene's caustics off."""
-    import trilens
-    lights = trilens.load_scene(scene, warn=lambda _: None).to_dict().get("lights", [])
-    return [word for i, light in enumerate(lights) if light.get("caustics") for word in ("--set", f"/lights/{i}/caustics=false")]
-
-
 def row_of(options, scene, folder):
     import trilens
-    view = [str(scene), "--size", options.size, "-t", "1", "--aov", "Z", *dark_words(scene)]
+    view = [str(scene), "--size", options.size, "-t", "1", "--aov", "Z", *without_caustics(scene)]
     truth, rendered, traced = (str(folder / name) for name in ("truth.exr", "rendered.exr", "traced.exr"))
     run([options.trilens, "trace", *view, "--spp", str(options.truth), "-o", truth])
     _, of_render = run([options.trilens, "render", *view, "--spp", str(options.spp), "--max-error", str(options.max_error), "-o", rendered])

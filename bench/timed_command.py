@@ -18,3 +18,10 @@ def run(words, allowed=(0,)):
             raise RuntimeError(f"{' '.join(words)}: exit {child.returncode}")
         out.seek(0)
         return json.load(out), usage
+
+
+def without_caustics(scene):
+    """Words that turn off what lights cast over optics in a scene: it shines on what is seen, and takes minutes to trace."""
+    import trilens
+    lights = trilens.load_scene(scene, warn=lambda _: None).to_dict().get("lights", [])
+    return [word for i, light in enumerate(lights) if light.get("caustics") for word in ("--set", f"/lights/{i}/caustics=false")]

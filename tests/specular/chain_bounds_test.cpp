@@ -1,5 +1,5 @@
 // Proofs that boxes hold one path of light, against Newton's method from many places in them.
-#include "specular/chain/chain_bounds.h"
+#include "specular/chain/path_chain.h"
 
 #include <cmath>
 #include <random>

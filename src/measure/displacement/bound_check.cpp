@@ -5,6 +5,7 @@
 
 #include "measure/common/comparable.h"
 #include "measure/displacement/displacement.h"
+#include "measure/field/patch.h"
 #include "measure/field/position_field.h"
 
 namespace trilens {
@@ -25,30 +26,41 @@ bool is_one_piece(const PositionField& field, int column, int row) {
     return true;
 }
 
-/// How far, in pixels, what lies between pixels may be from where it is by interpolation: the field's second
-/// differences, by the inverse of its first ones.
-double interpolation_error(const PositionField& field, int column, int row) {
-    const auto at = [&](int x, int y) { return field.point(field.index(column + x, row + y)); };
-    const Vec3 middle = at(0, 0);
-    const Vec3 dx = 0.5 * (at(1, 0) - at(-1, 0)), dy = 0.5 * (at(0, 1) - at(0, -1));
-    const std::array seconds{at(1, 0) + at(-1, 0) - 2.0 * middle, at(0, 1) + at(0, -1) - 2.0 * middle,
-                             0.5 * (at(1, 1) + at(-1, -1) - at(1, -1) - at(-1, 1))};
-    const double xx = dot(dx, dx), xy = dot(dx, dy), yy = dot(dy, dy), determinant = xx * yy - xy * xy;
-    double sum = 0;
-    for (const Vec3& second : seconds) {
-        const double x = dot(dx, second), y = dot(dy, second);
-        sum += std::hypot(yy * x - xy * y, xx * y - xy * x);
-    }
-    return sum / (8 * determinant);
+/// Five points in a row, of pixels.
+using FivePoints = std::array<Vec3, 5>;
+
+/// Whether patches over these pixels are cubics through them: third differences are small against steps.
+bool is_smooth(const FivePoints& p) {
+    const Vec3 before = p[3] - 3.0 * p[2] + 3.0 * p[1] - p[0], after = p[4] - 3.0 * p[3] + 3.0 * p[2] - p[1];
+    const double third = std::max(dot(before, before), dot(after, after));
+    const Vec3 left = p[2] - p[1], right = p[3] - p[2];
+    return third <= kSmoothThird * std::max(dot(left, left), dot(right, right));
 }
 
-/// Whether what is measured in a pixel, whose place is interpolated from those around, is good to kBoundRoom.
+/// How far, in pixels, what a cubic says between pixels may be from where it is: the field's fourth
+/// differences by the inverse of its first ones; 3/128 of them along each axis, doubled for what is left out.
+double interpolation_error(const FivePoints& x, const FivePoints& y) {
+    const Vec3 dx = 0.5 * (x[3] - x[1]), dy = 0.5 * (y[3] - y[1]);
+    const double xx = dot(dx, dx), xy = dot(dx, dy), yy = dot(dy, dy), determinant = xx * yy - xy * xy;
+    double sum = 0;
+    for (const FivePoints* p : {&x, &y}) {
+        const Vec3 fourth = (*p)[0] - 4.0 * (*p)[1] + 6.0 * (*p)[2] - 4.0 * (*p)[3] + (*p)[4];
+        const double along_x = dot(dx, fourth), along_y = dot(dy, fourth);
+        sum += std::hypot(yy * along_x - xy * along_y, xx * along_y - xy * along_x);
+    }
+    return 2 * 3.0 / 128 * sum / determinant;
+}
+
+/// Whether what is measured in a pixel, by those around, is good to kBoundRoom.
 bool is_well_measured(const PositionField& field, int column, int row) {
     if (!is_one_piece(field, column, row)) return false;
-    for (int y = row - 1; y <= row + 1; ++y)
-        for (int x = column - 1; x <= column + 1; ++x)
-            if (!(interpolation_error(field, x, y) < kBoundRoom)) return false;
-    return true;
+    FivePoints x, y;
+    for (int k = -kReach; k <= kReach; ++k) {
+        const auto at = static_cast<std::size_t>(k + kReach);
+        x[at] = field.point(field.index(column + k, row));
+        y[at] = field.point(field.index(column, row + k));
+    }
+    return is_smooth(x) && is_smooth(y) && interpolation_error(x, y) < kBoundRoom;
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ inline constexpr std::size_t kFewestNeighbours = 6;
 /// Proven bounds of the test's displacement (its channel "bound", of a certified picture) against what was
 /// measured. Checked are pixels with a bound above zero whose shift was found and is not in doubt: off folds,
 /// in the middle of 5 x 5 pixels of the reference that show one triangle, or the environment, through one
-/// optic, and where its places, by their second differences, are linear between pixels to kBoundRoom. So good
+/// optic, and where its places, by their fourth differences, are cubic between pixels to kBoundRoom. So good
 /// the shift is there, too. A pixel's bound is the largest of all its paths', so it says less
 /// of one layer where light goes on in several ways.
 struct BoundCheck {

@@ -10,7 +10,7 @@
 
 #include "render/engines/path_ends.h"
 #include "render/frame/image_chain.h"
-#include "specular/chain/chain_bounds.h"
+#include "specular/chain/path_chain.h"
 
 namespace trilens {
 

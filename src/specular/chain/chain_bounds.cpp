@@ -1,4 +1,5 @@
-#include "specular/chain/chain_bounds.h"
+// Bounds of the second derivatives of the optical path over boxes, and Krawczyk's operator.
+#include "specular/chain/path_chain.h"
 
 #include <algorithm>
 #include <array>

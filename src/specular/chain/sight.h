@@ -1,6 +1,10 @@
 // Ball arithmetic of directions: a vector known to lie within a radius of a middle.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "base/math/vec.h"
 
 namespace trilens {
@@ -23,7 +27,16 @@ struct Sight {
 
 /// The ways between two balls are those from the one's middle to a ball of both radii, `radius`. False where
 /// the balls meet.
-bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight);
+inline bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight) {
+    const Vec3 way = to - from;
+    const double distance = length(way);
+    if (!(distance > radius)) return false;
+    sight.by_distance = 1 / distance;
+    sight.direction = way * sight.by_distance;
+    sight.sine = radius * sight.by_distance;
+    sight.turn = chord_of(sight.sine);
+    return true;
+}
 
 /// Of a tangent or second derivative: the length in the middle, the most anywhere, and how much it changes.
 struct Reach {
@@ -37,16 +50,26 @@ struct Reach {
 
 /// The most that (a . Q b) / d changes, Q the projection across a sight of distance d. `stretch`: the
 /// sight's.
-double turning_radius(const Sight& sight, double stretch, const Reach& a, const Reach& b);
+inline double turning_radius(const Sight& sight, double stretch, const Reach& a, const Reach& b) {
+    return stretch * a.all * b.all +
+           sight.by_distance * (a.radius * b.all + a.length * (sight.sine * b.all + b.radius));
+}
 
 /// How index times the unit direction of a sight changes along a step of its far end, in the middle: the
 /// direction turns by the step across it.
-Vec3 turned(const Sight& sight, double index, const Vec3& step);
+inline Vec3 turned(const Sight& sight, double index, const Vec3& step) {
+    return index * sight.by_distance * (step - dot(sight.direction, step) * sight.direction);
+}
 
 /// The largest size of a coordinate.
-double largest_coordinate(const Vec3& v);
+inline double largest_coordinate(const Vec3& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
 
 /// Of a gradient's part in one sight, per length of the tangent: what rounding leaves of it.
-double rounding_of_way(double index, double by_distance, double coordinate);
+inline double rounding_of_way(double index, double by_distance, double coordinate) {
+    constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+    return kRounding * index * (1 + coordinate * by_distance);
+}
 
 }  // namespace trilens
