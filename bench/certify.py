@@ -39,12 +39,14 @@ def proven_pixels(image, most):
 
 
 def nearest_images(renderer, asked, word, search):
-    """For each pixel how far from it `project` finds the nearest image of its place over that word of events; infinity: none."""
-    nearest = [math.inf] * len(asked)
+    """For each pixel how far from it `project` finds the nearest image of its place over that word of events (infinity: none), and
+    whether the list of images is said to be complete."""
+    nearest, complete = [math.inf] * len(asked), [False] * len(asked)
     for image in renderer.project([place for _, place, _ in asked], path=word, search=search, visibility=False):
         i = int(image["point"])
         nearest[i] = min(nearest[i], math.dist(asked[i][0], (float(image["x"]), float(image["y"]))))
-    return nearest
+        complete[i] = bool(image["complete"])
+    return nearest, complete
 
 
 def held_by_project(options, scene, image):
@@ -56,16 +58,18 @@ def held_by_project(options, scene, image):
     width, height = map(int, options.size.split("x"))
     film = {"/film/width": width, "/film/height": height}
     renderer = trilens.Renderer(trilens.load_scene(scene, film, warn=lambda _: None))
-    distances = [math.inf] * len(asked)
+    distances, complete = [math.inf] * len(asked), [False] * len(asked)
     # Images that the mirror itself hides are listed by the search near facets alone.
     for word, search in ("R", "complete"), ("R", "facets"), ("RR", "complete"), ("RRR", "complete"), ("RRRR", "complete"):
         others = [i for i, (_, _, bound) in enumerate(asked) if distances[i] > bound + ROUNDING]
         if others:
-            for i, distance in zip(others, nearest_images(renderer, [asked[i] for i in others], word, search), strict=True):
+            for i, distance, whole in zip(others, *nearest_images(renderer, [asked[i] for i in others], word, search), strict=True):
                 distances[i] = min(distances[i], distance)
-    bounds = [bound for _, _, bound in asked]
-    ratios = [bound / distance for bound, distance in zip(bounds, distances) if LEAST < distance < math.inf]
-    return len(asked), sum(distance > bound + ROUNDING for bound, distance in zip(bounds, distances)), ratios
+                complete[i] = complete[i] or whole
+    # No answer is what may be missing from a list.
+    known = [i for i, (_, _, bound) in enumerate(asked) if complete[i] or distances[i] <= bound + ROUNDING]
+    ratios = [asked[i][2] / distances[i] for i in known if LEAST < distances[i] < math.inf]
+    return len(known), sum(distances[i] > asked[i][2] + ROUNDING for i in known), ratios
 
 
 def name_of(options, scene):
