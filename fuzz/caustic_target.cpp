@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <variant>
 
 #include "base/util/parallel.h"
 #include "fuzz/random_scene.h"
@@ -20,11 +19,6 @@ using namespace trilens;
 namespace trilens_fuzz {
 namespace {
 
-bool is_followed(const Light& light) {
-    return !std::holds_alternative<AmbientLight>(light.kind) &&
-           !std::holds_alternative<EnvironmentLight>(light.kind);
-}
-
 /// Small, so that one takes tenths of a second: few facets, few pixels, short paths.
 Scene made_small(Scene scene) {
     scene.film.width = 8, scene.film.height = 6, scene.film.spp = 1;
@@ -35,7 +29,7 @@ Scene made_small(Scene scene) {
     });
     for (Mesh& mesh : scene.meshes) mesh.resolution = std::min(mesh.resolution, 4);
     for (Light& light : scene.lights) {
-        light.caustics = is_followed(light);
+        light.caustics = !is_dome(light);
     }
     return scene;
 }
@@ -85,7 +79,7 @@ void require_maps(const Renderer& renderer, const Scene& scene) {
     request.target.width = request.target.height = 8;
     request.tolerance = 0.02;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        if (!is_followed(scene.lights[i])) continue;
+        if (is_dome(scene.lights[i])) continue;
         request.light = i;
         for (const bool exact : {false, true}) {
             request.exact = exact;

@@ -43,12 +43,6 @@ ShadeBatch::Bits unhindered(const std::function<Segments::Bits(const Segments&)>
     return lanes;
 }
 
-/// Whether the light comes from all around.
-bool is_dome(const Light& light) {
-    return std::holds_alternative<AmbientLight>(light.kind) ||
-           std::holds_alternative<EnvironmentLight>(light.kind);
-}
-
 std::size_t lobe_count(const Light& dome) {
     const auto* environment = std::get_if<EnvironmentLight>(&dome.kind);
     return static_cast<std::size_t>(environment ? environment->samples

@@ -100,8 +100,8 @@ CellTerms cell_terms(const SpecularQuery& query, const SurfaceBounds& bounds, co
     terms.eye_uu = n * turning_radius(eye, stretch, terms.u, terms.u);
     terms.eye_uv = n * turning_radius(eye, stretch, terms.u, terms.v);
     terms.eye_vv = n * turning_radius(eye, stretch, terms.v, terms.v);
-    terms.eye_change_u = turned(eye, n, m.du);
-    terms.eye_change_v = turned(eye, n, m.dv);
+    terms.eye_change_u = turn_of_way(n * eye.by_distance, eye.direction, m.du);
+    terms.eye_change_v = turn_of_way(n * eye.by_distance, eye.direction, m.dv);
     terms.eye_by_distance = eye.by_distance;
     terms.coordinate = std::max(largest_coordinate(m.position),
                                 query.camera.parallel ? 0 : largest_coordinate(query.camera.eye));
@@ -135,8 +135,8 @@ NewtonBounds newton_bounds(const CellTerms& terms, const Vec3& point, const Vec2
     const double vv = radius(terms.eye_vv, terms.v, terms.v, terms.vv);
     if (!std::isfinite(uu + uv + vv)) return result;
 
-    const Vec3 change_u = terms.eye_change_u + turned(sight, n, middle.du);
-    const Vec3 change_v = terms.eye_change_v + turned(sight, n, middle.dv);
+    const Vec3 change_u = terms.eye_change_u + turn_of_way(n * sight.by_distance, sight.direction, middle.du);
+    const Vec3 change_v = terms.eye_change_v + turn_of_way(n * sight.by_distance, sight.direction, middle.dv);
     const double mixed = dot(change_u, middle.dv) + dot(bend, middle.duv);
     result.inverse = glm::inverse(Mat2(dot(change_u, middle.du) + dot(bend, middle.duu), mixed, mixed,
                                        dot(change_v, middle.dv) + dot(bend, middle.dvv)));

@@ -44,15 +44,6 @@ Vec2 gradient(const SpecularQuery& query, const SurfacePoint& point) {
     return gradient(query, specular_path(query, point.position), point);
 }
 
-Vec2 clamped(FaceDomain domain, Vec2 uv) {
-    uv = glm::clamp(uv, Vec2(0), Vec2(1));
-    const double beyond = uv.x + uv.y - 1;
-    if (domain == FaceDomain::kSquare || beyond <= 0) return uv;
-    // The nearest point of the long side u + v = 1.
-    const double u = std::clamp(uv.x - 0.5 * beyond, 0.0, 1.0);
-    return {u, 1 - u};
-}
-
 /// One iterate: the law's two equations and their Jacobian, in an orthonormal frame of the tangent plane.
 struct Iterate {
     SurfaceParameter at;
@@ -96,8 +87,8 @@ Mat2 difference_jacobian(const Surface& surface, const SurfaceParameter& at, con
     for (int k = 0; k < 2; ++k) {
         Vec2 step(0);
         step[k] = kDifferenceStep;
-        Vec2 low = clamped(domain, at.uv - step), high = at.uv + step;
-        if (clamped(domain, high) != high)
+        Vec2 low = clamped_to(domain, at.uv - step), high = at.uv + step;
+        if (clamped_to(domain, high) != high)
             high = at.uv;  // at a triangle's long side clamping would move both parameters
         const Vec2 change =
             gradient(query, surface.eval(at.face, high)) - gradient(query, surface.eval(at.face, low));
@@ -158,7 +149,7 @@ double largest(const Vec2& v) {
 void polish(const Surface& surface, const SpecularQuery& query, const Mat2& jacobian, Iterate& iterate) {
     const Vec2 step = damped_step(iterate, jacobian, 0);
     if (largest(step) > kLastStep) return;
-    const Vec2 uv = clamped(surface.domain(iterate.at.face), iterate.at.uv + step);
+    const Vec2 uv = clamped_to(surface.domain(iterate.at.face), iterate.at.uv + step);
     const Iterate next = evaluate(surface, {iterate.at.face, uv}, query);
     if (next.residual < iterate.residual) iterate = next;
 }
@@ -181,7 +172,8 @@ Rest solve_law(const Surface& surface, const Iterate& start, const SpecularQuery
         bool fell = false;
         for (; rest.iterations < kMaxIterations && damping < kLastDamping && !fell; ++rest.iterations) {
             const Vec2 step = damped_step(now, jacobian, damping * scale);
-            const Iterate next = evaluate(surface, {now.at.face, clamped(domain, now.at.uv + step)}, query);
+            const Iterate next =
+                evaluate(surface, {now.at.face, clamped_to(domain, now.at.uv + step)}, query);
             fell = next.regular && next.residual < now.residual;
             if (fell) now = next;
             damping = fell ? 0.03 * damping : std::max(16 * damping, kFirstDamping);
@@ -223,13 +215,14 @@ std::optional<SpecularPoint> refine_from(const Surface& surface, const Iterate& 
 std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
                                                    const SpecularQuery& query) {
     TRILENS_CHECK(query.eye_index > 0 && query.point_index > 0, "a refractive index is positive");
-    const Vec2 uv = clamped(surface.domain(start.face), start.uv);
+    const Vec2 uv = clamped_to(surface.domain(start.face), start.uv);
     return refine_from(surface, evaluate(surface, {start.face, uv}, query), query);
 }
 
 std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
                                                    const SurfacePoint& point, const SpecularQuery& query) {
-    TRILENS_CHECK(clamped(surface.domain(start.face), start.uv) == start.uv, "the start lies in the domain");
+    TRILENS_CHECK(clamped_to(surface.domain(start.face), start.uv) == start.uv,
+                  "the start lies in the domain");
     return refine_from(surface, evaluate_at(start, point, query), query);
 }
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <string>
 
-#include "image/image_io.h"
 #include "laws/agreement.h"
 #include "laws/worlds.h"
 #include "render/engines/engine.h"
@@ -17,14 +16,9 @@ namespace {
 constexpr int kTerrainWidth = 80, kTerrainHeight = 60;
 constexpr double kSizeX = 8, kSizeY = 1.2, kSizeZ = 6;
 
-/// An OpenEXR of one channel.
 std::string heights_file(const HeightGrid& heights) {
     const std::string file = scratch_dir("terrain_law") + "/heights.exr";
-    Image image;
-    image.width = image.data_width = heights.columns;
-    image.height = image.data_height = heights.rows;
-    image.channels.push_back({"Y", heights.values});
-    write_exr(file, image);
+    write_heights(file, heights);
     return file;
 }
 

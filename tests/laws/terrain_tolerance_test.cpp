@@ -42,12 +42,7 @@ constexpr std::array<Sight, 5> kSights{{
 
 std::string heights_file() {
     const std::string file = scratch_dir("terrain_tolerance") + "/heights.exr";
-    const HeightGrid heights = mountains(kColumns, kRows);
-    Image image;
-    image.width = image.data_width = heights.columns;
-    image.height = image.data_height = heights.rows;
-    image.channels.push_back({"Y", heights.values});
-    write_exr(file, image);
+    write_heights(file, mountains(kColumns, kRows));
     return file;
 }
 

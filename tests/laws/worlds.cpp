@@ -167,4 +167,12 @@ std::unique_ptr<World> cage_world(const Cage& cage, int n, int width, int height
     return finish(std::move(scene), n);
 }
 
+void write_heights(const std::string& file, const HeightGrid& heights) {
+    Image image;
+    image.width = image.data_width = heights.columns;
+    image.height = image.data_height = heights.rows;
+    image.channels.push_back({"Y", heights.values});
+    write_exr(file, image);
+}
+
 }  // namespace trilens_test

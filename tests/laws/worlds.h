@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/image/height_grid.h"
 #include "render/world/world.h"
 #include "scene/load.h"
 
@@ -32,5 +33,8 @@ std::unique_ptr<trilens::World> data_world(const std::string& name);
 
 /// A world from JSON text.
 std::unique_ptr<trilens::World> world_from(const std::string& name, const std::string& json, int n);
+
+/// The heights of a terrain as an OpenEXR of one channel.
+void write_heights(const std::string& file, const trilens::HeightGrid& heights);
 
 }  // namespace trilens_test

@@ -32,6 +32,15 @@ struct PlacedBox {
     }
 };
 
+PlacedBox small_box(const ChainShape& shape) {
+    PlacedBox box;
+    for (const SurfaceParameter& at : shape.at) {
+        box.middle.push_back(at.uv);
+        box.half.emplace_back(1e-5);
+    }
+    return box;
+}
+
 double distance_of(const ChainShape& a, const ChainShape& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.at.size(); ++i) most = std::max(most, length(a.at[i].uv - b.at[i].uv));
@@ -88,11 +97,7 @@ TEST_CASE("a small box around a path of one to four surfaces is proven to hold i
                 if (!shape) continue;
                 ++solved;
                 CAPTURE(mirrors, count, seed);
-                PlacedBox box;
-                for (const SurfaceParameter& at : shape->at) {
-                    box.middle.push_back(at.uv);
-                    box.half.emplace_back(1e-5);
-                }
+                PlacedBox box = small_box(*shape);
                 proven += holds_one_path(example.chain, box.over(example));
                 box.middle.back().x += 2e-5;
                 CHECK_FALSE(holds_one_path(example.chain, box.over(example)));
@@ -118,11 +123,7 @@ TEST_CASE("paths to a point at infinity, and of parallel rays, are proven, too",
                 if (!shape) continue;
                 ++solved;
                 CAPTURE(mirrors, parallel, seed);
-                PlacedBox box;
-                for (const SurfaceParameter& at : shape->at) {
-                    box.middle.push_back(at.uv);
-                    box.half.emplace_back(1e-5);
-                }
+                PlacedBox box = small_box(*shape);
                 CHECK(holds_one_path(example.chain, box.over(example)));
                 box.middle.front().y += 2e-5;
                 CHECK_FALSE(holds_one_path(example.chain, box.over(example)));

@@ -118,6 +118,12 @@ inline bool has_followed_light(const Light& light) {
     return light.caustics && !light.baked;
 }
 
+/// Whether it comes from all around.
+inline bool is_dome(const Light& light) {
+    return std::holds_alternative<AmbientLight>(light.kind) ||
+           std::holds_alternative<EnvironmentLight>(light.kind);
+}
+
 inline const char* kind_name(const Light& light) {
     return std::visit([](const auto& kind) { return kind.kName; }, light.kind);
 }

@@ -2,6 +2,7 @@
 // triangles of a scene.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -19,6 +20,16 @@ namespace trilens {
 
 /// The parameter domain of a face: the unit square, or the triangle u >= 0, v >= 0, u + v <= 1.
 enum class FaceDomain { kSquare, kTriangle };
+
+/// The place of the domain next to (u, v): of what lies in the unit square, beyond a triangle's long side
+/// u + v = 1, the nearest of that side.
+inline Vec2 clamped_to(FaceDomain domain, const Vec2& uv) {
+    const Vec2 within = glm::clamp(uv, Vec2(0), Vec2(1));
+    const double beyond = within.x + within.y - 1;
+    if (domain == FaceDomain::kSquare || beyond <= 0) return within;
+    const double u = std::clamp(within.x - 0.5 * beyond, 0.0, 1.0);
+    return {u, 1 - u};
+}
 
 /// A point of a surface with its derivatives with respect to the face's (u, v); world frame.
 struct SurfacePoint {

@@ -127,6 +127,7 @@ void certify_samples(const CertifyParams& params, SampleViews& views, PathEnds& 
     std::vector<double> largest(views.samples.size(), 0);
     for (std::size_t i = 0; i < ends.ends.size(); ++i)
         largest[ends.sample[i]] = std::max(largest[ends.sample[i]], bound[i]);
+    std::vector<char> is_given_back(views.samples.size(), 0);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < ends.ends.size(); ++i) {
         const Id sample = ends.sample[i];
@@ -134,9 +135,9 @@ void certify_samples(const CertifyParams& params, SampleViews& views, PathEnds& 
             views.of_optics[sample].bound = largest[sample];
             ends.ends[kept] = ends.ends[i];
             ends.sample[kept++] = sample;
-        } else if (largest[sample] == kUnproven) {
+        } else if (!is_given_back[sample]) {
+            is_given_back[sample] = 1;
             traced.push_back(sample);
-            largest[sample] = std::numeric_limits<double>::quiet_NaN();  // given back, once
         }
     }
     ends.ends.resize(kept);

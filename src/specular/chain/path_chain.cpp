@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/util/check.h"
+#include "specular/chain/sight.h"
 
 namespace trilens {
 namespace {
@@ -15,22 +16,8 @@ constexpr double kChainRounding = 64;      // units of rounding that coordinates
 constexpr double kChainParameterStep = 1e-11;  // a step below it, in (u, v), ends the search
 constexpr double kChainReach = 0.5;  // a step goes no farther than this in (u, v), of the unit square
 
-/// (n / l) (1 - e e^T) v: how n times the unit direction of a stretch turns as one of its ends moves by v.
-Vec3 turn_of_way(double index, const Vec3& way, double length, const Vec3& v) {
-    if (std::isinf(length)) return Vec3(0);
-    return index / length * (v - dot(way, v) * way);
-}
-
 double index_along(const PathChain& chain, std::size_t stretch) {
     return stretch == 0 ? chain.events[0].index_before : chain.events[stretch - 1].index_after;
-}
-
-Vec2 clamped_to(FaceDomain domain, Vec2 uv) {
-    uv = glm::clamp(uv, Vec2(0), Vec2(1));
-    const double beyond = uv.x + uv.y - 1;
-    if (domain == FaceDomain::kSquare || beyond <= 0) return uv;
-    const double u = std::clamp(uv.x - 0.5 * beyond, 0.0, 1.0);
-    return {u, 1 - u};
 }
 
 ChainShape shape_at(const PathChain& chain, std::vector<SurfaceParameter> at) {
@@ -121,13 +108,13 @@ std::vector<double> chain_second_derivatives(const PathChain& chain, const Chain
         const Vec3 second[3] = {p.duu, p.duv, p.dvv};
         for (std::size_t a = 0; a < 2; ++a) {
             const Vec3 turn =
-                turn_of_way(index_along(chain, i), bend.way[i], bend.length[i], tangent[a]) +
-                turn_of_way(index_along(chain, i + 1), bend.way[i + 1], bend.length[i + 1], tangent[a]);
+                turn_of_way(index_along(chain, i) / bend.length[i], bend.way[i], tangent[a]) +
+                turn_of_way(index_along(chain, i + 1) / bend.length[i + 1], bend.way[i + 1], tangent[a]);
             for (std::size_t b = 0; b < 2; ++b)
                 at(2 * i + b, 2 * i + a) = dot(turn, tangent[b]) + dot(bend.bend[i], second[a + b]);
             if (i + 1 == points.size()) continue;
             const Vec3 next =
-                turn_of_way(index_along(chain, i + 1), bend.way[i + 1], bend.length[i + 1], tangent[a]);
+                turn_of_way(index_along(chain, i + 1) / bend.length[i + 1], bend.way[i + 1], tangent[a]);
             const Vec3 other[2] = {points[i + 1].du, points[i + 1].dv};
             for (std::size_t b = 0; b < 2; ++b)
                 at(2 * i + 2 + b, 2 * i + a) = at(2 * i + a, 2 * i + 2 + b) = -dot(next, other[b]);
@@ -195,9 +182,9 @@ PathSensitivity::PathSensitivity(const PathChain& chain, std::span<const Surface
         lambda_[axis] = hessian.solve(right);
         // F of the last event changes by -H_k dX along its tangents; at infinity the way itself turns by dX.
         const Vec2& at_end = lambda_[axis][last];
-        by_point_[axis] = turn_of_way(index_along(chain, last + 1), bend.way[last + 1],
-                                      chain.point.is_direction ? 1 : bend.length[last + 1],
-                                      at_end.x * points[last].du + at_end.y * points[last].dv);
+        by_point_[axis] =
+            turn_of_way(index_along(chain, last + 1) / (chain.point.is_direction ? 1 : bend.length[last + 1]),
+                        bend.way[last + 1], at_end.x * points[last].du + at_end.y * points[last].dv);
     }
 }
 

@@ -55,10 +55,10 @@ inline double turning_radius(const Sight& sight, double stretch, const Reach& a,
            sight.by_distance * (a.radius * b.all + a.length * (sight.sine * b.all + b.radius));
 }
 
-/// How index times the unit direction of a sight changes along a step of its far end, in the middle: the
-/// direction turns by the step across it.
-inline Vec3 turned(const Sight& sight, double index, const Vec3& step) {
-    return index * sight.by_distance * (step - dot(sight.direction, step) * sight.direction);
+/// (n / l) (1 - e e^T) v: how n times the unit direction of a stretch turns as one of its ends moves by v.
+/// `by_length`: n / l, 0 at infinity.
+inline Vec3 turn_of_way(double by_length, const Vec3& way, const Vec3& v) {
+    return by_length * (v - dot(way, v) * way);
 }
 
 /// The largest size of a coordinate.
