@@ -72,6 +72,7 @@ const std::map<std::string, std::string> kElsewhere{
     {"design_sag_table", "of designs that design_mirror made"},
     {"design_scene", "of designs that design_mirror made"},
     {"design_stl", "of designs that design_mirror made"},
+    {"clamped_to", "of any place"},
     {"find_mesh", "of any name"},
     {"has_own_normals", "of any mesh"},
     {"against_name", "of an enumerator"},
