@@ -45,15 +45,16 @@ struct ShadeSurroundings {
 };
 
 /// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs, colors,
-/// normals and baked light may end early: triangles beyond have zeros, and colours of one.
+/// normals, tangents and baked light may end early: triangles beyond have zeros, and colours of one.
 struct ShadeScene : ShadeSurroundings {
     const TriangleScene* triangles = nullptr;
     std::vector<Id> material;              // index into materials
     std::vector<std::array<Vec2, 3>> uvs;  // v upward from the picture's bottom; unset triangles hold zeros
     std::vector<std::array<Vec2, 3>> second_uvs;  // of textures whose sampler says so
-    std::vector<std::array<Vec4, 3>> colors;   // factors of base colour and alpha; unset triangles hold ones
-    std::vector<std::array<Vec3, 3>> normals;  // unit per corner; all zero: the triangle is flat
-    std::vector<BakedLight> baked;             // arrives beside what the lights send
+    std::vector<std::array<Vec4, 3>> colors;    // factors of base colour and alpha; unset triangles hold ones
+    std::vector<std::array<Vec3, 3>> normals;   // unit per corner; all zero: the triangle is flat
+    std::vector<std::array<Vec4, 3>> tangents;  // of normal maps, as ObjectMesh has them
+    std::vector<BakedLight> baked;              // arrives beside what the lights send
 };
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided;
@@ -140,8 +141,9 @@ struct SurfaceNormals {
 /// `toward`.
 Vec3 baked_light_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward);
 
-/// The normal there that light comes to, where the material's normal map shows `in_map`. Tangents are the
-/// triangle's own derivatives by u and v, at right angles to the normal.
+/// The normal there that light comes to, where the material's normal map shows `in_map`. The tangent is the
+/// mean of the corners' by their weights, at right angles to the normal; where they have none it is the
+/// triangle's own derivative by u.
 Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const SurfaceNormals& surface,
                    const Vec3& in_map);
 

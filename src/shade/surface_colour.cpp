@@ -188,6 +188,40 @@ Vec3 baked_light_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward)
            hit.barycentric.y * side[2];
 }
 
+namespace {
+
+/// Unit, at right angles to each other and to the normal, along growing u and v; zero where there are none.
+struct MapAxes {
+    Vec3 along_u{0}, along_v{0};
+};
+
+Vec3 in_plane(const Vec3& v, const Vec3& normal) {
+    return normalize_or_zero(v - dot(v, normal) * normal);
+}
+
+/// By the corners' tangents. `front`: the normal on the side where the corners turn anticlockwise.
+MapAxes given_axes(const ShadeScene& scene, const Hit& hit, const Vec3& front) {
+    if (hit.triangle >= scene.tangents.size()) return {};
+    const std::array<Vec4, 3>& at = scene.tangents[hit.triangle];
+    const Vec4 mean = (1 - hit.barycentric.x - hit.barycentric.y) * at[0] + hit.barycentric.x * at[1] +
+                      hit.barycentric.y * at[2];
+    const Vec3 tangent = in_plane(Vec3(mean), front);
+    return {tangent, (mean.w < 0 ? -1.0 : 1.0) * cross(front, tangent)};
+}
+
+/// By the point's derivatives over the triangle with corners a, a + b and a + c.
+MapAxes own_axes(const std::array<Vec2, 3>& uv, const std::array<Vec3, 2>& sides, const Vec3& front) {
+    const auto& [b, c] = sides;
+    const Vec2 ub = uv[1] - uv[0], uc = uv[2] - uv[0];
+    const double area = ub.x * uc.y - ub.y * uc.x;
+    if (!(area != 0)) return {};
+    const Vec3 along_u = (uc.y * b - ub.y * c) / area, along_v = (ub.x * c - uc.x * b) / area;
+    const Vec3 tangent = in_plane(along_u, front), bitangent = cross(front, tangent);
+    return {tangent, dot(bitangent, along_v) < 0 ? -bitangent : bitangent};
+}
+
+}  // namespace
+
 Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const SurfaceNormals& surface,
                    const Vec3& in_map) {
     const Material& material = material_of(scene, hit);
@@ -195,22 +229,17 @@ Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const SurfaceNormals
     if (!material.normal_texture.picture) return normal;
     const std::array<Vec2, 3>* of_corners = uvs_of(scene, hit.triangle, material.normal_texture.sampler);
     if (!of_corners) return normal;
-    const std::array<Vec2, 3>& uv = *of_corners;
     const IdTriple& corner = scene.triangles->triangles[hit.triangle];
     const Vec3& a = scene.triangles->points[corner[0]];
     const Vec3 b = scene.triangles->points[corner[1]] - a, c = scene.triangles->points[corner[2]] - a;
-    const Vec2 ub = uv[1] - uv[0], uc = uv[2] - uv[0];
-    const double area = ub.x * uc.y - ub.y * uc.x;
-    if (!(area != 0)) return normal;
-    // The point's derivatives by u and by v.
-    const Vec3 along_u = (uc.y * b - ub.y * c) / area, along_v = (ub.x * c - uc.x * b) / area;
     // The map is of the front, where the corners turn anticlockwise.
     const double side = dot(cross(b, c), surface.geometric) < 0 ? -1 : 1;
     const Vec3 front = side * normal;
-    const Vec3 tangent = normalize_or_zero(along_u - dot(along_u, front) * front);
-    Vec3 bitangent = cross(front, tangent);
-    if (dot(bitangent, along_v) < 0) bitangent = -bitangent;
-    const Vec3 mapped = normalize_or_zero(in_map.x * tangent + in_map.y * bitangent + in_map.z * front);
+    MapAxes axes = given_axes(scene, hit, front);
+    if (axes.along_u == Vec3(0)) axes = own_axes(*of_corners, {b, c}, front);
+    if (axes.along_u == Vec3(0)) return normal;
+    const Vec3 mapped =
+        normalize_or_zero(in_map.x * axes.along_u + in_map.y * axes.along_v + in_map.z * front);
     return mapped == Vec3(0) ? normal : side * mapped;
 }
 

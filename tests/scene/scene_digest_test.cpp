@@ -26,7 +26,7 @@ Scene full_scene() {
     material.base_color_texture = texture(1);
     scene.materials = {material};
     Mesh mesh;
-    mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {{}}, {{}}, {0}, {}};
+    mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {{}}, {{}}, {{}}, {0}, {}};
     mesh.primitive = Primitive{};
     mesh.cage = {{{1, 2, 3}}, {3}, {0, 0, 0}, {}, {}, {0}, {2}, {1.5}, {0}, {2.5}, {0}, {}};
     scene.meshes = {mesh, mesh};
@@ -130,6 +130,7 @@ std::vector<Change> changes_of_shapes() {
             [](Scene& s) { s.meshes[0].object.uvs[0][2].y = 9; },
             [](Scene& s) { s.meshes[0].object.colors[0][2].w = 0.5; },
             [](Scene& s) { s.meshes[0].object.normals[0][2].y = 9; },
+            [](Scene& s) { s.meshes[0].object.tangents[0][2].y = 9; },
             [](Scene& s) { s.meshes[0].object.material[0] = 9; },
             [](Scene& s) { s.meshes[0].cage.normals = {Vec3(1, 0, 0)}; },
             [](Scene& s) { s.meshes[0].primitive.reset(); },

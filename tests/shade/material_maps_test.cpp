@@ -67,6 +67,39 @@ TEST_CASE("a normal map turns the normal along u and v, from both sides and unde
     }
 }
 
+TEST_CASE("a normal map lies along the corners' tangents where there are some, whatever uv say",
+          "[shade][oracle]") {
+    Draw draw(32);
+    for (int trial = 0; trial < 300; ++trial) {
+        const double side = trial % 2 ? 1 : -1, hand = trial % 4 < 2 ? 1 : -1;
+        Vec3 toward = draw.unit();
+        if (toward.z * side < 0) toward.z = -toward.z;
+        MappedTriangle triangle({1, 0, 0}, {0, 1, 0}, from_above(toward));
+        const Vec3 mapped = normalize(Vec3(draw.uniform(-0.5, 0.5), draw.uniform(-0.5, 0.5), 1));
+        triangle.material().normal_texture.picture = one_texel((mapped + Vec3(1)) / 2.0);
+        // Any smooth normals on the front, any tangents.
+        triangle.shading.normals.resize(1);
+        triangle.shading.tangents.resize(1);
+        const Vec3 weights(0.4, 0.3, 0.3);
+        Vec3 normal(0), tangent(0);
+        for (int k = 0; k < 3; ++k) {
+            const auto corner = static_cast<std::size_t>(k);
+            const Vec3 n = normalize(Vec3(draw.uniform(-0.4, 0.4), draw.uniform(-0.4, 0.4), 1)),
+                       t = normalize(Vec3(1, draw.uniform(-1, 1), draw.uniform(-0.3, 0.3)));
+            triangle.shading.normals[0][corner] = n;
+            triangle.shading.tangents[0][corner] = Vec4(t, hand);
+            normal += weights[k] * n;
+            tangent += weights[k] * t;
+        }
+        normal = normalize(normal);
+        tangent = normalize(tangent - dot(tangent, normal) * normal);
+        const Vec3 lit = side * normalize(mapped.x * tangent + hand * mapped.y * cross(normal, tangent) +
+                                          mapped.z * normal);
+        const double seen = triangle.seen({0, 0, side}).x;
+        CHECK(seen == Approx(std::max(dot(lit, toward), 0.0)).margin(1e-6));
+    }
+}
+
 TEST_CASE("occlusion dims light from around, and emission adds to what is reflected", "[shade]") {
     Light ambient;
     ambient.intensity = 0.5;

@@ -59,6 +59,7 @@ struct Gathered {
         append_where_given(mesh.colors, triangles.size() - count, shading.colors,
                            {Vec4(1), Vec4(1), Vec4(1)});
         append_where_given(mesh.normals, triangles.size() - count, shading.normals);
+        append_where_given(mesh.tangents, triangles.size() - count, shading.tangents);
         append_where_given(mesh.baked, triangles.size() - count, shading.baked);
     }
 };
@@ -76,6 +77,7 @@ ObjectMesh part_of(const ObjectMesh& mesh, const std::vector<Id>& numbers) {
     take(mesh.second_uvs, part.second_uvs);
     take(mesh.colors, part.colors);
     take(mesh.normals, part.normals);
+    take(mesh.tangents, part.tangents);
     take(mesh.material, part.material);
     take(mesh.baked, part.baked);
     return part;

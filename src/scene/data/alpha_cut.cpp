@@ -222,12 +222,13 @@ class MeshCutter {
         if (!from_.second_uvs.empty()) to_.second_uvs.push_back(from_.second_uvs[t]);
         if (!from_.colors.empty()) to_.colors.push_back(from_.colors[t]);
         if (!from_.normals.empty()) to_.normals.push_back(from_.normals[t]);
+        if (!from_.tangents.empty()) to_.tangents.push_back(from_.tangents[t]);
     }
 
     void add(std::size_t t, const GridPolygon& piece, const TriangleCut& cut) {
         const auto first = static_cast<Id>(to_.points.size());
         std::vector<Vec2> uvs, second_uvs;
-        std::vector<Vec4> colors;
+        std::vector<Vec4> colors, tangents;
         std::vector<Vec3> normals;
         for (const GridPlace& place : piece) {
             const Vec2 weights = cut.weights(place);
@@ -241,6 +242,7 @@ class MeshCutter {
             if (!from_.uvs.empty()) uvs.push_back(mix_set(from_.uvs));
             if (!from_.second_uvs.empty()) second_uvs.push_back(mix_set(from_.second_uvs));
             if (!from_.colors.empty()) colors.push_back(mix_set(from_.colors));
+            if (!from_.tangents.empty()) tangents.push_back(mix_set(from_.tangents));
             if (!from_.normals.empty())
                 normals.push_back(
                     normalize_or_zero(mix(from_.normals[t][0], from_.normals[t][1], from_.normals[t][2])));
@@ -252,6 +254,7 @@ class MeshCutter {
             if (!uvs.empty()) to_.uvs.push_back({uvs[0], uvs[b], uvs[c]});
             if (!second_uvs.empty()) to_.second_uvs.push_back({second_uvs[0], second_uvs[b], second_uvs[c]});
             if (!colors.empty()) to_.colors.push_back({colors[0], colors[b], colors[c]});
+            if (!tangents.empty()) to_.tangents.push_back({tangents[0], tangents[b], tangents[c]});
             if (!from_.normals.empty()) to_.normals.push_back({normals[0], normals[b], normals[c]});
         }
     }

@@ -91,6 +91,7 @@ void TriangleSplitter::split(const TriangleSplit& split) {
     split_corners(object_.uvs, split, middle_of(object_.uvs, split));
     split_corners(object_.second_uvs, split, middle_of(object_.second_uvs, split));
     split_corners(object_.colors, split, middle_of(object_.colors, split));
+    split_corners(object_.tangents, split, middle_of(object_.tangents, split));
     auto normal = middle_of(object_.normals, split);
     normal[0] = normalize_or_zero(normal[0]);
     split_corners(object_.normals, split, normal);

@@ -157,6 +157,11 @@ void SceneCheck::object(const Mesh& whole, const std::string& place) const {
                 require(color[k] >= 0 && color[k] <= 1, place + "/colors", "has a number outside 0..1");
     require(mesh.normals.empty() || mesh.normals.size() == count, place + "/normals",
             "needs one entry per triangle, or none");
+    require(mesh.tangents.empty() || mesh.tangents.size() == count, place + "/tangents",
+            "needs one entry per triangle, or none");
+    for (const std::array<Vec4, 3>& corners : mesh.tangents)
+        for (const Vec4& tangent : corners)
+            require(is_finite(Vec3(tangent)) && is_finite(tangent.w), place + "/tangents", "is not finite");
     require(mesh.baked.empty() || mesh.baked.size() == count, place + "/bakedLight",
             "needs one entry per triangle, or none");
     for (const BakedLight& light : mesh.baked)

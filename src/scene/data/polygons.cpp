@@ -50,6 +50,9 @@ void add_triangle(const PolygonMesh& mesh, const std::array<std::size_t, 3>& cor
             {mesh.second_uvs[corner[0]], mesh.second_uvs[corner[1]], mesh.second_uvs[corner[2]]});
     if (!mesh.colors.empty())
         object.colors.push_back({mesh.colors[corner[0]], mesh.colors[corner[1]], mesh.colors[corner[2]]});
+    if (!mesh.tangents.empty())
+        object.tangents.push_back(
+            {mesh.tangents[corner[0]], mesh.tangents[corner[1]], mesh.tangents[corner[2]]});
     if (mesh.normals.empty()) return;
     std::array<Vec3, 3> normals;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -75,12 +78,14 @@ bool place(PolygonMesh& mesh, const Transform& transform) {
     if (!place(mesh.cage.points, transform)) return false;
     const Mat3 normals = normal_map(transform);
     for (Vec3& normal : mesh.normals) normal = normalize_or_zero(normals * normalize_or_zero(normal));
+    for (Vec4& tangent : mesh.tangents) tangent = map_tangent(transform, tangent);
     if (mirrors(transform)) {
         reverse_after_first(mesh.cage.face_vertex_indices, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.uvs, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.second_uvs, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.colors, mesh.cage.face_vertex_counts);
         reverse_after_first(mesh.normals, mesh.cage.face_vertex_counts);
+        reverse_after_first(mesh.tangents, mesh.cage.face_vertex_counts);
     }
     return true;
 }
@@ -305,6 +310,11 @@ Mat3 normal_map(const Transform& t) {
     const Mat3& m = t.linear;
     const double sign = mirrors(t) ? -1 : 1;
     return {sign * cross(m[1], m[2]), sign * cross(m[2], m[0]), sign * cross(m[0], m[1])};
+}
+
+Vec4 map_tangent(const Transform& t, const Vec4& tangent) {
+    const Vec3 turned = normalize_or_zero(t.linear * normalize_or_zero(Vec3(tangent)));
+    return {turned, mirrors(t) ? -tangent.w : tangent.w};
 }
 
 std::optional<double> similarity_factor(const Transform& t) {

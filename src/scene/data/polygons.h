@@ -55,6 +55,9 @@ bool mirrors(const Transform& t);
 /// Normals go by the inverse transpose; unit, or zero where the normal is zero. `t` must not flatten.
 Mat3 normal_map(const Transform& t);
 
+/// A tangent of a normal map: unit, and in w its handedness, which a mirroring map turns over.
+Vec4 map_tangent(const Transform& t, const Vec4& tangent);
+
 /// The factor of a similarity (rotation or mirroring times a factor), none for other maps. Tolerance:
 /// kSimilar.
 std::optional<double> similarity_factor(const Transform& t);
@@ -77,6 +80,7 @@ struct PolygonMesh {
     std::vector<Vec2> second_uvs;     // of textures that ask for the second set
     std::vector<Vec4> colors;         // factors of the base colour and its alpha, not negative
     std::vector<Vec3> normals;        // any length; zero: none, take the triangle's own
+    std::vector<Vec4> tangents;       // as ObjectMesh has them, any length; zero: none
     std::vector<Id> face_material;    // per face an index into `materials`, or kNone; empty: none at all
     std::vector<Material> materials;  // the file's own
     std::vector<HeightMap> heights;   // of materials that move the mesh's points, one per entry; or empty

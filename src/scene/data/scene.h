@@ -85,8 +85,10 @@ struct ObjectMesh {
     std::vector<std::array<Vec2, 3>> second_uvs;  // of textures that ask for the second set
     std::vector<std::array<Vec4, 3>> colors;      // factors of the base colour and its alpha
     std::vector<std::array<Vec3, 3>> normals;     // unit
-    std::vector<Id> material;                     // per triangle: index into Scene::materials
-    std::vector<BakedLight> baked;                // either empty or one entry per triangle
+    // Of normal maps: xyz along growing u, v grows along w cross(normal, xyz); zero: the triangle's own.
+    std::vector<std::array<Vec4, 3>> tangents;
+    std::vector<Id> material;       // per triangle: index into Scene::materials
+    std::vector<BakedLight> baked;  // either empty or one entry per triangle
 };
 
 /// What an object's triangles were made of, where heights are.

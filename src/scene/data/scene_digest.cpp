@@ -213,9 +213,11 @@ void add(const Mesh& mesh, Digest& digest) {
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
-    const auto& [points, triangles, uvs, second_uvs, colors, corner_normals, materials, baked] = object;
+    const auto& [points, triangles, uvs, second_uvs, colors, corner_normals, tangents, materials, baked] =
+        object;
     digest.add_all(points, triangles, uvs, second_uvs, colors, corner_normals, materials);
-    if (!baked.empty()) digest.add(baked);  // keys of older sweeps stay
+    if (!tangents.empty()) digest.add(tangents);  // keys of older sweeps stay
+    if (!baked.empty()) digest.add(baked);
     digest.add(primitive.has_value());
     if (primitive) add(*primitive, digest);
     add(cage, digest);

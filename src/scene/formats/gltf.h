@@ -36,13 +36,14 @@ struct GltfImage {
 
 /// How far a morph target moves a primitive's vertices; empty: not at all.
 struct GltfMorphTarget {
-    std::vector<Vec3> positions, normals;
+    std::vector<Vec3> positions, normals, tangents;
 };
 
 /// One primitive of a mesh with triangles, attributes per vertex.
 struct GltfPrimitive {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;     // empty, or one per position
+    std::vector<Vec4> tangents;    // empty, or one per position: along growing u, w 1 or -1
     std::vector<Vec2> uvs;         // empty, or one per position; v downward as in glTF
     std::vector<Vec2> second_uvs;  // TEXCOORD_1, likewise
     std::vector<Vec4> colors;      // empty, or one per position: linear, red, green, blue, alpha
@@ -161,7 +162,7 @@ struct GltfPart {
     GltfMoment moment;
 };
 
-/// The mesh's points and normals as morph targets and skin have them, in the world.
+/// The mesh's points, normals and tangents as morph targets and skin have them, in the world.
 PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, const TextureReader* textures,
                              const GltfPart& part);
 

@@ -57,15 +57,23 @@ class Materials {
     std::map<int, std::shared_ptr<const Texture>> pictures_;
 };
 
-/// The primitive's points and normals moved by its morph targets.
-void morph(const GltfPrimitive& primitive, const std::vector<double>& weights, std::vector<Vec3>& positions,
-           std::vector<Vec3>& normals) {
+/// What a primitive's vertices have that moves.
+struct Vertices {
+    std::vector<Vec3> positions, normals;
+    std::vector<Vec4> tangents;
+};
+
+/// Moved by morph targets.
+void morph(const GltfPrimitive& primitive, const std::vector<double>& weights, Vertices& vertices) {
+    auto& [positions, normals, tangents] = vertices;
     for (std::size_t k = 0; k < primitive.targets.size() && k < weights.size(); ++k) {
         const GltfMorphTarget& target = primitive.targets[k];
         for (std::size_t i = 0; weights[k] != 0 && i < target.positions.size(); ++i)
             positions[i] += weights[k] * target.positions[i];
         for (std::size_t i = 0; weights[k] != 0 && i < target.normals.size() && i < normals.size(); ++i)
             normals[i] += weights[k] * target.normals[i];
+        for (std::size_t i = 0; weights[k] != 0 && i < target.tangents.size() && i < tangents.size(); ++i)
+            tangents[i] += Vec4(weights[k] * target.tangents[i], 0);
     }
 }
 
@@ -98,12 +106,14 @@ class Appender {
     void append(int node, const GltfPrimitive& primitive, Id material) {
         place_vertices(node, primitive);
         const auto base = static_cast<int>(mesh_.cage.points.size());
-        mesh_.cage.points.insert(mesh_.cage.points.end(), positions_.begin(), positions_.end());
+        mesh_.cage.points.insert(mesh_.cage.points.end(), now_.positions.begin(), now_.positions.end());
         // What has no second set takes its first for it.
         const bool has_second = !primitive.second_uvs.empty() || !mesh_.second_uvs.empty();
         if (has_second && mesh_.second_uvs.empty()) mesh_.second_uvs = mesh_.uvs;
         const bool has_colors = !primitive.colors.empty() || !mesh_.colors.empty();
         if (has_colors) mesh_.colors.resize(mesh_.cage.face_vertex_indices.size(), Vec4(1));
+        const bool has_tangents = !now_.tangents.empty() || !mesh_.tangents.empty();
+        if (has_tangents) mesh_.tangents.resize(mesh_.cage.face_vertex_indices.size(), Vec4(0));
         for (const IdTriple& triangle : primitive.triangles) {
             IdTriple corners = triangle;
             if (mirrored_) std::swap(corners[1], corners[2]);
@@ -119,7 +129,9 @@ class Appender {
                 }
                 if (has_colors)
                     mesh_.colors.push_back(primitive.colors.empty() ? Vec4(1) : primitive.colors[vertex]);
-                mesh_.normals.push_back(normals_.empty() ? Vec3(0) : normals_[vertex]);
+                mesh_.normals.push_back(now_.normals.empty() ? Vec3(0) : now_.normals[vertex]);
+                if (has_tangents)
+                    mesh_.tangents.push_back(now_.tangents.empty() ? Vec4(0) : now_.tangents[vertex]);
             }
         }
     }
@@ -127,17 +139,17 @@ class Appender {
   private:
     void place_vertices(int node, const GltfPrimitive& primitive) {
         const auto index = static_cast<std::size_t>(node);
-        positions_ = primitive.positions;
-        normals_ = primitive.normals;
-        morph(primitive, pose_.weights[index], positions_, normals_);
+        now_ = {primitive.positions, primitive.normals, primitive.tangents};
+        morph(primitive, pose_.weights[index], now_);
         const int skin = model_.nodes[index].skin;
         if (skin >= 0 && primitive.influences > 0)
             return bend(model_.skins[static_cast<std::size_t>(skin)], primitive);
         const Transform& world = pose_.world_from_node[index];
         mirrored_ = mirrors(world);
         const Mat3 turn = normal_map(world);
-        for (Vec3& position : positions_) position = map_point(world, position);
-        for (Vec3& normal : normals_) normal = normalize_or_zero(turn * normalize_or_zero(normal));
+        for (Vec3& position : now_.positions) position = map_point(world, position);
+        for (Vec3& normal : now_.normals) normal = normalize_or_zero(turn * normalize_or_zero(normal));
+        for (Vec4& tangent : now_.tangents) tangent = map_tangent(world, tangent);
     }
 
     /// A skinned mesh stands where its joints are, wherever its node is (glTF 2.0, section 3.7.3.3).
@@ -147,18 +159,20 @@ class Appender {
             of_joint.push_back(compose(pose_.world_from_node[static_cast<std::size_t>(skin.joints[j])],
                                        skin.joint_from_mesh[j]));
         mirrored_ = !of_joint.empty() && mirrors(of_joint.front());
-        for (std::size_t i = 0; i < positions_.size(); ++i) {
+        auto& [positions, normals, tangents] = now_;
+        for (std::size_t i = 0; i < positions.size(); ++i) {
             const Transform at = blended(primitive, i, of_joint);
-            positions_[i] = map_point(at, positions_[i]);
-            if (i < normals_.size())
-                normals_[i] = normalize_or_zero(normal_map(at) * normalize_or_zero(normals_[i]));
+            positions[i] = map_point(at, positions[i]);
+            if (i < normals.size())
+                normals[i] = normalize_or_zero(normal_map(at) * normalize_or_zero(normals[i]));
+            if (i < tangents.size()) tangents[i] = map_tangent(at, tangents[i]);
         }
     }
 
     const GltfModel& model_;
     const GltfPose& pose_;
     PolygonMesh& mesh_;
-    std::vector<Vec3> positions_, normals_;
+    Vertices now_;
     bool mirrored_ = false;
 };
 

@@ -132,6 +132,7 @@ class Reader {
         result.material = checked(in.material, in_.materials.size(), place, "material");
         result.positions = vec3s(in.attributes.at("POSITION"));
         if (in.attributes.count("NORMAL") > 0) result.normals = vec3s(in.attributes.at("NORMAL"));
+        read_tangents(in, place, result);
         const auto uv_set = [&](const char* name) {
             const auto uvs = in.attributes.find(name);
             return uvs == in.attributes.end() ? std::vector<Vec2>() : vec2s(uvs->second);
@@ -150,6 +151,21 @@ class Reader {
                 read_target(in.targets[k], result.positions.size(), place + "/targets/" + std::to_string(k)));
         result.triangles = triangles(in, mode, result.positions.size(), place);
         mesh.push_back(std::move(result));
+    }
+
+    /// Of a primitive without normals they are ignored (glTF 2.0, section 3.7.2.1).
+    void read_tangents(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {
+        const auto found = in.attributes.find("TANGENT");
+        if (found == in.attributes.end() || into.normals.empty()) return;
+        const std::vector<double> numbers = read_gltf_accessor(in_, found->second, 4, source_.file);
+        if (numbers.size() != 4 * into.positions.size()) fail(place, "its attributes differ in length");
+        for (std::size_t i = 0; i < numbers.size(); i += 4)
+            into.tangents.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]);
+        if (std::all_of(into.tangents.begin(), into.tangents.end(),
+                        [](const Vec4& tangent) { return std::abs(tangent.w) == 1; }))
+            return;
+        warn("tangents whose handedness is neither 1 nor -1 are ignored");
+        into.tangents.clear();
     }
 
     void read_colors(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {
@@ -203,6 +219,7 @@ class Reader {
         };
         read("POSITION", target.positions);
         read("NORMAL", target.normals);
+        read("TANGENT", target.tangents);
         return target;
     }
 

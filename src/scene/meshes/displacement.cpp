@@ -285,6 +285,7 @@ DisplacementLoss displace(PolygonMesh& mesh, const FaceHeights& by) {
         else
             ++loss.without_normal;
     }
+    mesh.tangents.clear();  // they lay in the surface that was
     if (!mesh.normals.empty()) NormalRenewal(mesh, place, of_faces).run(moved);
     return loss;
 }

@@ -71,7 +71,10 @@ void add_smooth_normals(PolygonMesh& mesh) {
 }
 
 void set_shading(PolygonMesh& mesh, ObjectShading shading) {
-    if (shading == ObjectShading::kFlatNormals) mesh.normals.clear();
+    if (shading == ObjectShading::kFlatNormals) {
+        mesh.normals.clear();
+        mesh.tangents.clear();
+    }
     if (shading == ObjectShading::kSmoothNormals) add_smooth_normals(mesh);
 }
 

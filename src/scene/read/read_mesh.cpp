@@ -8,6 +8,7 @@
 #include "base/util/names.h"
 #include "scene/data/alpha_cut.h"
 #include "scene/data/cage_diagnostics.h"
+#include "scene/meshes/tangents.h"
 #include "scene/meshes/vertex_normals.h"
 #include "scene/meshes/weld.h"
 #include "scene/read/reading.h"
@@ -220,6 +221,7 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     }
     settle_materials(own, mesh, reading.scene);
     settle_second_uvs(node, mesh.object, reading);
+    add_tangents(mesh.object, reading.scene.materials);
     const AlphaCut cut = cut_by_alpha(mesh.object, reading.scene.materials);
     warn_count(cut.colored,
                "triangles of a mask have colours with an alpha at their points, which does not cut them",
