@@ -93,6 +93,7 @@ std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char
     if (!is_ordinary(encoded)) return nullptr;
     PngImage png;
     if (!png_image_begin_read_from_memory(&png.image, encoded.data(), encoded.size())) return nullptr;
+    const bool has_alpha = (png.image.format & PNG_FORMAT_FLAG_ALPHA) != 0;
     // With alpha, because without it libpng would blend the colours with a background.
     png.image.format = PNG_FORMAT_RGBA;
     const std::size_t pixels = static_cast<std::size_t>(png.image.width) * png.image.height;
@@ -106,6 +107,9 @@ std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char
         const std::array<float, 256>& linear = linear_from_byte();
         for (std::size_t i = 0; i < pixels; ++i)
             for (std::size_t c = 0; c < 3; ++c) texture->rgb[3 * i + c] = linear[stored[4 * i + c]];
+        if (has_alpha)
+            for (std::size_t i = 0; i < pixels; ++i)
+                texture->alpha.push_back(static_cast<float>(stored[4 * i + 3]) / 255.0F);
         return texture;
     } catch (const std::bad_alloc&) {
         return nullptr;

@@ -15,7 +15,7 @@
 
 namespace trilens {
 
-/// The picture of a PNG file in memory as linear Rec.709, alpha dropped and not applied. Null for what is
+/// The picture of a PNG file in memory as linear Rec.709, alpha beside it, not applied. Null for what is
 /// left to the library of all pictures: bytes that are no PNG, 16 bits, a gamma other than sRGB's, a colour
 /// profile, an interlaced or damaged file.
 std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char> encoded);

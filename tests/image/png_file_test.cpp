@@ -1,6 +1,7 @@
 // Ordinary PNGs are read without the library of all pictures, to the same values; the others are left to it.
 #include "image/png_file.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -66,7 +67,12 @@ TEST_CASE("an ordinary PNG has the values that the library of all pictures gives
         REQUIRE(read);
         CHECK(read->width == 23);
         CHECK(read->height == 17);
-        CHECK(read->rgb == library().read(file)->rgb);
+        const auto expected = library().read(file);
+        CHECK(read->rgb == expected->rgb);
+        REQUIRE(read->alpha.size() == expected->alpha.size());
+        CHECK(read->alpha.empty() == (channels == "1" || channels == "3"));
+        for (std::size_t i = 0; i < read->alpha.size(); ++i)
+            CHECK(std::abs(read->alpha[i] - expected->alpha[i]) < 1e-6F);
         CHECK(decode_ordinary_png(png_bytes(file))->rgb == read->rgb);
     }
 }
