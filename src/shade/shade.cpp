@@ -85,7 +85,10 @@ void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, V
         const double cosine = dot(frame.normal, sample.toward);
         if (cosine <= 0 || sample.irradiance == 0) continue;
         if (shadows && is_shadowed(scene, light, frame, sample)) continue;
-        arriving += kInversePi * sample.irradiance * cosine * (sample.color * light.color);
+        double irradiance = kInversePi * sample.irradiance * cosine;
+        if (shadows && scene.let_through)
+            irradiance *= scene.let_through({frame.shadow_start, sample.target - frame.shadow_start});
+        arriving += irradiance * (sample.color * light.color);
     }
 }
 

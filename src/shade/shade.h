@@ -39,6 +39,9 @@ struct ShadeSurroundings {
     std::function<Segments::Bits(const Segments&)> occluded;
     // The same of lights with caustics, which glass stops, too.
     std::function<Segments::Bits(const Segments&)> occluded_by_all;
+    // Of light that nothing stops, the share that comes from a segment's end (t = 1) to its start, through
+    // what blends; null: nothing does.
+    std::function<double(const Ray&)> let_through;
 
     /// Irradiance by light number `light`, one with caustics, over optics.
     std::function<Vec3(std::size_t light, const Receiver&)> caustic;

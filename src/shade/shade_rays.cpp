@@ -108,6 +108,7 @@ struct Shaded {
     Vec3 find_sample(std::size_t light, std::size_t sample);
     void add_viewed(std::size_t light, std::size_t sample, ShadeBatch::Bits lit);
     void add_lobe(std::size_t light, std::size_t lane);
+    void dim(ShadeBatch::Bits lit);
     ArrivedLight arrived(std::size_t lane) const;
     void shade(std::span<Vec3> light);
     void find_reaching(std::span<ReachingLight> to);
@@ -190,6 +191,8 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
             color = find_sample(l, k) * light.color;
         ShadeBatch::Bits lit = batch.lit & wanted;
         if (shadows) lit = unhindered(light.caustics ? scene.occluded_by_all : scene.occluded, batch, lit);
+        if (shadows) dim(lit);
+
         add_light(batch, color, lit);
         add_viewed(l, k, lit & viewed);
         by_any |= lit;
@@ -199,6 +202,14 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
     if (light.caustics && scene.caustic) add_caustic(l, wanted);
     for_each_of(by_any, [&](std::size_t i) {
         lights[i] += number_of_light(l, by_all & Segments::bit(i) ? Reach::kAll : Reach::kPart);
+    });
+}
+
+/// The light found last, by what it passes through.
+void Shaded::dim(ShadeBatch::Bits lit) {
+    if (!scene.let_through) return;
+    for_each_of(lit, [&](std::size_t i) {
+        batch.irradiance[i] *= scene.let_through({batch.shadow_start.get(i), batch.way.get(i)});
     });
 }
 
@@ -251,8 +262,9 @@ void Shaded::add_lobe(std::size_t l, std::size_t i) {
     const auto add_up = [&] {
         const Segments::Bits hidden = shadows && segments.count > 0 ? scene.occluded(segments) : 0;
         for_each_of(segments.all() & ~hidden, [&](std::size_t s) {
-            const Vec3 radiance =
+            Vec3 radiance =
                 lane.texels.occlusion * dome_radiance(scene, light, direction[s].toward, direction[s].side);
+            if (shadows && scene.let_through) radiance *= scene.let_through(segments.ray(s));
             lane.arrived.glossy += direction[s].glossy * radiance;
             lane.arrived.glossy_grazing += direction[s].grazing * radiance;
         });

@@ -8,6 +8,7 @@
 #include "laws/worlds.h"
 #include "render/picture/picture.h"
 #include "render/world/blended_surfaces.h"
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -114,4 +115,110 @@ TEST_CASE("blended surfaces before and behind a lens: projector and truth show t
     INFO("worst against facets " << worst << ", mean against the limit " << mean);
     CHECK(worst < 1e-5);
     CHECK(mean < 0.01);
+}
+
+namespace {
+
+/// A screen that is lit through panes, seen from below them: the camera looks away from the light.
+std::string lit_screen(const std::string& light, const std::string& screen, const std::string& panes_over) {
+    return R"({"version": 1, "film": {"width": 8, "height": 6},
+        "cameras": [{"name": "main", "yfov": 30,
+                     "lookAt": {"eye": [0, 0, -0.5], "at": [0, 0, -2], "up": [0, 1, 0]}}],
+        "background": {"color": [0.1, 0.1, 0.1]},
+        "materials": [{"name": "screen", "baseColorFactor": [0.8, 0.8, 0.8])" +
+           screen + R"(},
+            {"name": "veil", "alphaMode": "blend", "alphaFactor": 0.25},
+            {"name": "smoke", "alphaMode": "blend", "alphaFactor": 0.5},
+            {"name": "back", "alphaMode": "blend", "alphaFactor": 0.9, "doubleSided": false},
+            {"name": "chrome", "metallicFactor": 1}],
+        "meshes": [{"name": "screen", "role": "object", "material": "screen", "primitive": {"type": "plane",
+                     "center": [0, 0, -2], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [80, 80]}},
+                   {"name": "mirror", "role": "optic", "material": "chrome", "primitive": {"type": "plane",
+                     "center": [0.3, 0, -1.5], "normal": [1, 0, 0], "tangent": [0, 1, 0], "size": [1, 0.5]}})" +
+           panes_over + R"(], "lights": [)" + light + "]}";
+}
+
+double mean_green(const Image& image) {
+    double sum = 0;
+    const std::vector<float>& values = image.find("G")->floats();
+    for (const float value : values) sum += double{value};
+    return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+TEST_CASE("what blends dims the light of every kind of lamp by its alpha, drawn and traced", "[laws][law]") {
+    const std::string over = pane("veil", 0) + pane("smoke", 1);
+    // Seen from its front alone, which is turned from the light: no light stops at it.
+    const std::string turned =
+        R"(, {"name": "turned", "role": "object", "material": "back", "primitive": {"type": "plane",
+           "center": [0, 0, 0.5], "normal": [0, 0, -1], "tangent": [1, 0, 0], "size": [60, 60]}})";
+    for (
+        const char* kind :
+        {R"("type": "directional", "direction": [0.2, 0.1, -1])", R"("type": "point", "position": [1, 0, 9])",
+         R"("type": "directional", "direction": [0, 0, -1], "angle": 4, "samples": 9)",
+         R"("type": "rectangle", "position": [0, 0, 9], "direction": [0, 0, -1], "size": [1, 1], "samples": 9)",
+         R"("type": "sphere", "position": [0, 0, 9], "radius": 0.5, "samples": 9)"})
+        for (const char* screen : {"", R"(, "roughnessFactor": 0.6)"}) {
+            const std::string lamp = "{" + std::string(kind) + R"(, "intensity": 300, "shadows": true})";
+            // Blended surfaces are shaded sample by sample: there is one behind the screen in both.
+            const std::string behind = pane("veil", -5);
+            const auto free = world_from("screen", lit_screen(lamp, screen, behind), 4);
+            const auto dimmed = world_from("screen", lit_screen(lamp, screen, behind + over + turned), 4);
+            for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth})
+                for (const int spp : {1, 2}) {
+                    INFO(kind << screen << " engine " << static_cast<int>(engine) << " spp " << spp);
+                    const double lit = mean_green(drawn_by(*free, spp, engine));
+                    CHECK(lit > 0.01);
+                    CHECK(mean_green(drawn_by(*dimmed, spp, engine)) ==
+                          Approx(0.75 * 0.5 * lit).epsilon(1e-6));
+                }
+        }
+}
+
+TEST_CASE("light through what blends is the product over all that it crosses, by their sides",
+          "[laws][oracle]") {
+    Draw draw(8);
+    std::string materials, meshes;
+    struct Sheet {
+        std::array<Vec3, 3> corner;
+        double alpha;
+        bool both;
+    };
+    std::vector<Sheet> sheets;
+    const auto text = [](const Vec3& v) {
+        return "[" + std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z) + "]";
+    };
+    for (int i = 0; i < 24; ++i) {
+        Sheet sheet{{}, 0.1 + 0.03 * i, i % 2 == 0};
+        for (Vec3& corner : sheet.corner)
+            for (int k = 0; k < 3; ++k) corner[k] = std::round(1000 * draw.uniform(-2, 2)) / 1000;
+        const std::string name = "sheet" + std::to_string(i);
+        materials += R"(, {"name": ")" + name + R"(", "alphaMode": "blend", "alphaFactor": )" +
+                     std::to_string(sheet.alpha) + (sheet.both ? "" : R"(, "doubleSided": false)") + "}";
+        meshes += R"(, {"name": ")" + name + R"(", "role": "object", "material": ")" + name +
+                  R"(", "points": [)" + text(sheet.corner[0]) + "," + text(sheet.corner[1]) + "," +
+                  text(sheet.corner[2]) + R"(], "faceVertexCounts": [3], "faceVertexIndices": [0, 1, 2]})";
+        sheets.push_back(sheet);
+    }
+    const auto world = world_from("sheets", panes("", materials, meshes), 4);
+    REQUIRE(world->blended);
+    int crossed = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        const Vec3 from = 3.0 * draw.unit(), to = 3.0 * draw.unit();
+        double share = 1;
+        for (const Sheet& sheet : sheets) {
+            // Both ends on different sides of the plane, and the line on one side of all edges.
+            const auto& [a, b, c] = sheet.corner;
+            const double at_from = triple(b - a, c - a, from - a), at_to = triple(b - a, c - a, to - a);
+            if (at_from * at_to >= 0) continue;
+            const double u = triple(to - from, a - from, b - from), v = triple(to - from, b - from, c - from),
+                         w = triple(to - from, c - from, a - from);
+            if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
+            ++crossed;
+            if (sheet.both || at_to > 0) share *= 1 - sheet.alpha;  // the light, at `to`, is before its front
+        }
+        CHECK(world->blended->let_through({from, to - from}) == Approx(share).epsilon(1e-12));
+    }
+    CHECK(crossed > 200);
 }

@@ -65,6 +65,7 @@ std::vector<Change> changes_of_looks() {
             [](Scene& s) { s.materials[0].alpha_mode = AlphaMode::kMask; },
             [](Scene& s) { s.materials[0].alpha_cutoff = 0.25; },
             [](Scene& s) { s.materials[0].alpha_factor = 0.25; },
+            [](Scene& s) { s.materials[0].double_sided = false; },
             [](Scene& s) { s.lights[0].kind = PointLight{}; },
             [](Scene& s) {
                 s.lights[0].kind = PointLight{{0, 1, 0}};

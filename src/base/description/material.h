@@ -127,7 +127,8 @@ struct Material {
     PlacedTexture emissive_texture;             // factor of emissive_factor
     AlphaMode alpha_mode = AlphaMode::kOpaque;  // of objects, masks cut when they are read
     double alpha_cutoff = 0.5;
-    double alpha_factor = 1;  // times the alpha of the base colour's picture
+    double alpha_factor = 1;   // times the alpha of the base colour's picture
+    bool double_sided = true;  // of objects that blend: seen from behind, too
 
     bool is_matt() const {
         return brdf == Brdf::kLambert || (brdf == Brdf::kByRoughness && !(roughness_factor > 0));

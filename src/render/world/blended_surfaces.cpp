@@ -43,13 +43,20 @@ void BlendedSurfaces::set_up(const ShadeSurroundings& others) {
     shading_.caustic = {};
 }
 
+bool BlendedSurfaces::is_seen_by(const Ray& ray, Id triangle) const {
+    if (shading_.materials[shading_.material[triangle]].double_sided) return true;
+    const auto [a, b, c] = corners_of(triangles_, triangle);
+    return dot(cross(b - a, c - a), ray.direction) < 0;
+}
+
 std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const {
     std::vector<Hit> hits;
     const double most = until + kDepthTie * until;
     const ShearedRay sheared(ray);
     tree_.visit(ray, 0, most, [&](Id triangle) {
         if (const auto met = sheared.meet(corners_of(triangles_, triangle)))
-            if (met->t >= 0 && met->t <= most) hits.push_back({triangle, met->t, met->barycentric});
+            if (met->t >= 0 && met->t <= most && is_seen_by(ray, triangle))
+                hits.push_back({triangle, met->t, met->barycentric});
         return most;
     });
     std::sort(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) {
@@ -69,6 +76,13 @@ std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const 
     });
     hits.erase(last, hits.end());
     return hits;
+}
+
+double BlendedSurfaces::let_through(const Ray& segment) const {
+    double share = 1;
+    for (const Hit& hit : crossings({segment.origin + segment.direction, -segment.direction}, 1))
+        share *= 1 - opacity_at(shading_, hit);
+    return share;
 }
 
 std::vector<VolumeLight> BlendedSurfaces::shade(const Ray& ray, std::span<const Hit> crossings) const {

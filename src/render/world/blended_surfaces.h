@@ -25,13 +25,19 @@ class BlendedSurfaces {
     const TriangleScene& triangles() const { return triangles_; }
 
     /// All that lie on the ray between t = 0 and t = until, ties with `until` included, from near to far;
-    /// where two of one t meet along an edge, one of them.
+    /// where two of one t meet along an edge, one of them. Surfaces of one side count where that is seen.
     std::vector<Hit> crossings(const Ray& ray, double until) const;
+
+    /// The share of light that comes from the segment's end, t = 1, to its start: the surfaces between are
+    /// what is seen of them from there.
+    double let_through(const Ray& segment) const;
 
     /// What each of them adds: its colour in proportion to its opacity over what lies behind.
     std::vector<VolumeLight> shade(const Ray& ray, std::span<const Hit> crossings) const;
 
   private:
+    bool is_seen_by(const Ray& ray, Id triangle) const;
+
     TriangleScene triangles_;
     ShadeScene shading_;
     BoxTree tree_;

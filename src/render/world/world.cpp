@@ -249,6 +249,11 @@ void set_up_shading(World& world) {
         world.shading.occluded_by_all = [self = &world](const Segments& segments) {
             return meets_anything(*self, segments);
         };
+    world.shading.let_through = {};
+    if (world.blended && has_shadows(world))
+        world.shading.let_through = [self = &world](const Ray& segment) {
+            return self->blended->let_through(segment);
+        };
     if (world.blended) world.blended->set_up(world.shading);
     if (!has_caustics(world)) return;
     world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {

@@ -129,7 +129,7 @@ void add(const Material& material, Digest& digest) {
     const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion,
                  attenuation, distance, brdf, specular, specular_color, emissive, normal_scale,
                  occlusion_strength, metallic_roughness_map, normal_map, occlusion_map, emissive_map,
-                 alpha_mode, alpha_cutoff, alpha_factor] = material;
+                 alpha_mode, alpha_cutoff, alpha_factor, double_sided] = material;
     digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
                    distance, brdf, specular, specular_color, emissive, normal_scale, occlusion_strength,
                    alpha_mode, alpha_cutoff, alpha_factor);
@@ -137,6 +137,7 @@ void add(const Material& material, Digest& digest) {
     add(sampler, digest);
     for (const PlacedTexture* map : {&metallic_roughness_map, &normal_map, &occlusion_map, &emissive_map})
         add(*map, digest);
+    if (!double_sided) digest.add(double_sided);  // keys of older sweeps stay
 }
 
 void add(const DirectionalLight& light, Digest& digest) {

@@ -134,6 +134,7 @@ class MaterialReader {
                 source_.fail(place_, "the alpha of baseColorFactor is not in 0..1");
             if (factors[3] != 1) out_.written["alphaFactor"] = factors[3];
         }
+        if (in_.alphaMode == "BLEND" && !in_.doubleSided) out_.written["doubleSided"] = false;
         if (in_.alphaMode != "MASK") return;
         if (!(in_.alphaCutoff >= 0 && in_.alphaCutoff <= kLargestCoordinate))
             source_.fail(at("alphaCutoff"), "is negative");

@@ -182,7 +182,7 @@ class SceneWriter {
         const double rough = before.value("roughnessFactor", 0.0);
         if (rough > kMostRoughness) material["roughnessFactor"] = 0;
         for (const char* key : {"baseColorTexture", "metallicRoughnessTexture", "transmissionTexture",
-                                "alphaMode", "alphaFactor", "alphaCutoff", "occlusionTexture"})
+                                "alphaMode", "alphaFactor", "alphaCutoff", "doubleSided", "occlusionTexture"})
             material.erase(key);
         if (material == before) return false;
         const double metallic = before.value("metallicFactor", 0.0);

@@ -132,10 +132,9 @@ const std::vector<Field<RenderSettings>>& render_fields() {
                     "stands for a part of what their microfacets reflect."),
             setting("roughTruthSamples", &RenderSettings::rough_truth_samples, whole_in(1, kMostRoughSamples),
                     "The same of each pixel that is traced, shared among its samples; each is a ray."),
-            setting(
-                "certify", &RenderSettings::certify, yes_or_no(),
-                "It is proven at each pixel's middle that what optics show is off by at most 'maxError', "
-                "which is above 0; what is not proven is traced.")};
+            setting("certify", &RenderSettings::certify, yes_or_no(),
+                    "It is proven at each pixel's middle that what optics show is off by at most 'maxError', "
+                    "which is above 0; what is not proven is traced.")};
     }();
     return fields;
 }
@@ -208,10 +207,12 @@ const std::vector<Field<Material>>& material_fields() {
             choice(
                 "alphaMode", &Material::alpha_mode,
                 "object: mask: what is less opaque than 'alphaCutoff' is not there, by the alpha channel of "
-                "baseColorTexture times 'alphaFactor'; blend: by as much it hides what lies behind; it casts "
-                "no shadow, and ids are of what lies behind."),
+                "baseColorTexture times 'alphaFactor'; blend: by as much it hides what lies behind, and dims "
+                "light; ids are of what lies behind."),
             setting("alphaCutoff", &Material::alpha_cutoff, number_in(0, 2)),
-            setting("alphaFactor", &Material::alpha_factor, ref("share"))};
+            setting("alphaFactor", &Material::alpha_factor, ref("share")),
+            setting("doubleSided", &Material::double_sided, yes_or_no(),
+                    "Of an object that blends: whether it is there for what looks at its back.")};
     }();
     return fields;
 }
