@@ -75,6 +75,13 @@ TEST_CASE("an ordinary PNG has the values that the library of all pictures gives
             CHECK(std::abs(read->alpha[i] - expected->alpha[i]) < 1e-6F);
         CHECK(decode_ordinary_png(png_bytes(file))->rgb == read->rgb);
     }
+    const std::string opaque = "cd '" + folder +
+                               "' && oiiotool --pattern constant:color=0.2,0.4,0.6,1 5x3 4 " +
+                               "-d uint8 -o opaque.png > log.txt 2>&1";
+    REQUIRE(std::system(opaque.c_str()) == 0);
+    const auto read = read_ordinary_png(folder + "/opaque.png");
+    REQUIRE(read);
+    CHECK(read->alpha.empty());
 }
 
 TEST_CASE("a PNG with depth, gamma, profile or interlacing of its own is left to the library", "[image]") {
