@@ -15,14 +15,6 @@
 namespace trilens {
 namespace {
 
-/// A cross product of derivatives below this share of (extent * derivative) is rounding, not a direction:
-/// derivatives carry errors of about 1e-16 of the extent, so a normal above it is good to 1e-4.
-constexpr double kNormalNoise = 1e-12;
-
-/// Where the normal vanishes (collapsed edges, folded neighbourhoods) it is taken this share of the way
-/// towards the middle of the face; the later ones serve derivatives that vanish to higher order.
-constexpr std::array<double, 3> kStepsInward = {0x1p-20, 0x1p-12, 0x1p-6};
-
 /// A step this share of the way to the middle: far below the smallest patches, far above rounding.
 constexpr double kStepForSign = 0x1p-16;
 
@@ -215,13 +207,7 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces 
         for (Vec3* second : {&point.duu, &point.duv, &point.dvv}) *second = -*second;
     }
 
-    static Vec3 normal_of(const LimitPatches::Point& at) {
-        if (!(at.extent > 0)) return Vec3(0);
-        const Vec3 du = at.point.du / at.extent, dv = at.point.dv / at.extent;
-        const Vec3 across = cross(du, dv);
-        const bool is_noise = !(length(across) > kNormalNoise * (length(du) + length(dv)));
-        return is_noise ? Vec3(0) : normalize_or_zero(across);
-    }
+    static Vec3 normal_of(const LimitPatches::Point& at) { return normal_of_tangents(at.point, at.extent); }
 
     Vec3 normal_near(Id face, const Vec2& uv) const {
         const Vec2 middle = domain_ == FaceDomain::kSquare ? Vec2(0.5) : Vec2(1.0 / 3);

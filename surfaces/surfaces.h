@@ -7,6 +7,7 @@
 
 #include "base/description/optic_description.h"
 #include "base/math/box.h"
+#include "base/raymesh/rational_patch.h"
 #include "base/raymesh/surface.h"
 #include "base/util/error.h"
 #include "surfaces/memory_budget.h"
@@ -38,6 +39,11 @@ namespace trilens {
 /// on faces that are not triangles.
 std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn,
                                             double memory = machine_memory());
+
+/// The patches as they are, one face each, over the unit square: in double precision, with exact derivatives.
+/// Where sides of neighbours agree (join_patches) they are one edge. Front is where du x dv points.
+/// Throws InputError(name) where there are none.
+std::unique_ptr<Surface> make_patch_surface(std::vector<RationalPatch> patches, const std::string& name);
 
 /// The surface of a primitive, exact, with intersect(). Faces: sphere 6 (a cube mapped onto it, equal
 /// angles), cylinder and cone 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "scene/data/check_scene.h"
-#include "scene/data/patches.h"
 
 namespace trilens {
 namespace {
@@ -87,10 +86,11 @@ MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
     info.holes = mesh.cage.hole_indices.size();
     info.resolution = is_object ? 0 : mesh.resolution;
     if (mesh.primitive) info.bounds = primitive_box(*mesh.primitive);
-    if (mesh.of_patches && !is_object)
-        info.bounds = patch_bounds(mesh.cage);
-    else
-        for (const Vec3& point : points) info.bounds.include(point);
+    for (const RationalPatch& patch : mesh.patches) {
+        info.points += patch.points.size();
+        info.bounds.include(bounds_of(patch));
+    }
+    for (const Vec3& point : points) info.bounds.include(point);
     if (mesh.terrain) {
         const Terrain& terrain = *mesh.terrain;
         info.terrain = TerrainInfo{terrain.heights->columns, terrain.heights->rows,  terrain.missing_heights,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/raymesh/rational_patch.h"
 #include "base/util/check.h"
 
 namespace trilens {
@@ -183,28 +184,10 @@ FacePart fit_part(const Surface& surface, Id face, const PartShape& shape) {
     return part;
 }
 
-// De Casteljau's algorithm as products of linear polynomials in the shift operator (Farin, Curves and
-// Surfaces for CAGD, chapter 5).
-
 namespace {
 
 constexpr std::size_t kMost = BezierNet::kHighest + 1;
-
-/// Weights on the control points of one direction.
-using Weights = std::array<double, kMost>;
-
-/// One step of de Casteljau's algorithm at t: the weights times ((1 - t) + t E), E the shift by one.
-void step(Weights& weights, double t) {
-    for (std::size_t k = kMost - 1; k > 0; --k) weights[k] = (1 - t) * weights[k] + t * weights[k - 1];
-    weights[0] *= 1 - t;
-}
-
-/// The blossom's weights for `count` arguments, those before `from_high` equal to high, the others to low.
-Weights blossom(int count, int from_high, double low, double high) {
-    Weights weights{1};
-    for (int k = 0; k < count; ++k) step(weights, k < from_high ? high : low);
-    return weights;
-}
+using Weights = BezierWeights<kMost>;
 
 struct Rows {
     std::array<Weights, kMost> row{};
@@ -234,7 +217,8 @@ BezierNet combined(const BezierNet& net, const Rows& along_u, const Rows& along_
 
 Rows restriction(int degree, double low, double high) {
     Rows rows;
-    for (int i = 0; i <= degree; ++i) rows.row[static_cast<std::size_t>(i)] = blossom(degree, i, low, high);
+    for (int i = 0; i <= degree; ++i)
+        rows.row[static_cast<std::size_t>(i)] = blossom<kMost>(degree, i, low, high);
     return rows;
 }
 
@@ -243,7 +227,7 @@ Rows inverse_of_basis(std::span<const double> nodes) {
     const std::size_t n = nodes.size();
     Rows matrix, inverse;
     for (std::size_t k = 0; k < n; ++k) {
-        matrix.row[k] = blossom(static_cast<int>(n) - 1, static_cast<int>(n) - 1, nodes[k], nodes[k]);
+        matrix.row[k] = blossom<kMost>(static_cast<int>(n) - 1, static_cast<int>(n) - 1, nodes[k], nodes[k]);
         inverse.row[k][k] = 1;
     }
     for (std::size_t column = 0; column < n; ++column) {
@@ -269,7 +253,7 @@ Rows inverse_of_basis(std::span<const double> nodes) {
 }  // namespace
 
 Vec3 value(const BezierNet& net, const Vec2& t) {
-    const Weights u = blossom(net.nu, net.nu, t.x, t.x), v = blossom(net.nv, net.nv, t.y, t.y);
+    const Weights u = blossom<kMost>(net.nu, net.nu, t.x, t.x), v = blossom<kMost>(net.nv, net.nv, t.y, t.y);
     const std::size_t wide = static_cast<std::size_t>(net.nu) + 1;
     Vec3 sum(0);
     for (std::size_t j = 0; j <= static_cast<std::size_t>(net.nv); ++j)

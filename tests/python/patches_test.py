@@ -18,6 +18,24 @@ def test_the_teapot_is_32_patches_that_mirror():
     assert np.median(np.abs(render - trace)) < 0.01
 
 
+def test_what_is_on_the_ring_of_nurbs_is_on_a_torus():
+    scene = trilens.load_scene(SOURCE / "scenes/patches/nurbs.json", SMALL)
+    assert [(mesh.shape, mesh.faces) for mesh in scene.meshes[:2]] == [("patches", 392), ("patches", 16)]
+    renderer = trilens.Renderer(scene)
+    pixels = np.random.default_rng(1).uniform(0, [64, 48], (1500, 2))
+    events = renderer.shoot(pixels)[1]
+    # The optics are those meshes in their order.
+    at = events["point"][events["optic"] == 1] - [2.55, 0.42, 1.7]
+    assert len(at) > 30
+    away = np.hypot(np.hypot(at[:, 0], at[:, 2]) - 0.95, at[:, 1]) - 0.42
+    assert np.abs(away).max() < 1e-6  # the file's points have six digits
+
+
+def test_knots_that_fall_are_refused_with_their_place():
+    with pytest.raises(trilens.InputError, match="/meshes/1/patches/0/knots/1: knots fall at number 5"):
+        trilens.load_scene(SOURCE / "scenes/patches/nurbs.json", {"/meshes/1/patches/0/knots/1/4": 0.5})
+
+
 def test_curves_that_do_not_meet_are_refused_with_their_place():
     line = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]
     with pytest.raises(trilens.InputError, match="/meshes/0/patches/0/curves: the curves' ends do not agree"):

@@ -77,6 +77,7 @@ def png_data(png):
     return data
 
 
-def test_the_teapot_that_a_script_makes_is_as_it_makes_it(tmp_path):
-    subprocess.run([SOURCE / "scripts/make-teapot-scene", tmp_path], check=True, capture_output=True)
-    assert (tmp_path / "patches/teapot.json").read_text() == (SOURCE / "scenes/patches/teapot.json").read_text()
+@pytest.mark.parametrize("name", ["teapot", "nurbs"])
+def test_scenes_of_patches_that_scripts_make_are_as_they_make_them(name, tmp_path):
+    subprocess.run([SOURCE / f"scripts/make-{name}-scene", tmp_path], check=True, capture_output=True)
+    assert (tmp_path / f"patches/{name}.json").read_text() == (SOURCE / f"scenes/patches/{name}.json").read_text()

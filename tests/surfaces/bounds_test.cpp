@@ -113,6 +113,29 @@ const std::array<PrimitiveKind, 6> kBoundedKinds = {SpherePrimitive{1.7},      P
                                                     CylinderPrimitive{1.7, 4}, ConePrimitive{1.7, 1.1},
                                                     PlanePrimitive{{3, 0.7}},  kLens};
 
+/// Patches of several degrees and weights; the k-th of the first four has its k-th side in one point.
+std::vector<RationalPatch> rational_patches() {
+    Boxes draw(41);
+    std::vector<RationalPatch> patches;
+    const std::array<std::array<int, 2>, 7> degrees = {
+        {{3, 3}, {2, 3}, {3, 2}, {4, 4}, {1, 2}, {5, 1}, {3, 3}}};
+    for (std::size_t k = 0; k < degrees.size(); ++k) {
+        const auto [p, q] = degrees[k];
+        RationalPatch patch{p, q, Vec3(2, -3, 10) * (k == 6 ? 1e3 : 1.0), {}};
+        for (int j = 0; j <= q; ++j)
+            for (int i = 0; i <= p; ++i) {
+                Vec3 at(static_cast<double>(i) / p, static_cast<double>(j) / q, draw.uniform(-0.2, 0.2));
+                const std::array<double, 4> distance = {at.y, 1 - at.x, 1 - at.y, at.x};
+                if (k < 4 && distance[k] == 0)
+                    at = Vec3(k == 1 ? 1 : k == 3 ? 0 : 0.5, k == 0 ? 0 : k == 2 ? 1 : 0.5, 0.1);
+                const double w = draw.uniform(0.5, 2);
+                patch.points.emplace_back(w * at, w);
+            }
+        patches.push_back(patch);
+    }
+    return patches;
+}
+
 /// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
 Cage octahedron() {
     Cage cage =
@@ -132,6 +155,24 @@ TEST_CASE("no point of a primitive lies outside its bounds", "[surfaces][law]") 
         CHECK(outside.outside == 0);
         CHECK(outside.points > 300000);
     }
+}
+
+TEST_CASE("no point of a rational patch lies outside its bounds, nor beside a side that is one point",
+          "[surfaces][law]") {
+    const auto surface = make_patch_surface(rational_patches(), "patches");
+    const Outside outside = points_outside(*surface, 31, 6000);
+    CAPTURE(outside.worst);
+    CHECK(outside.outside == 0);
+    CHECK(outside.points > 400000);
+    // Up to a pole normals keep within what they turn by.
+    const auto bounder = surface->make_bounder();
+    for (Id face = 0; face < 4; ++face)
+        for (const double size : {0x1p-4, 0x1p-10, 0x1p-20}) {
+            const Vec2 low[] = {{0.3, 0}, {1 - size, 0.3}, {0.3, 1 - size}, {0, 0.3}};
+            const SurfaceBounds bounds = bounder->bounds(face, low[face], low[face] + size);
+            CAPTURE(face, size);
+            CHECK(bounds.normal_radius < 60 * size + 1e-8);
+        }
 }
 
 TEST_CASE("no point of a limit surface lies outside its bounds", "[surfaces][law]") {
@@ -167,7 +208,8 @@ TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") 
     }
     for (const PrimitiveKind& kind : kBoundedKinds)
         surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(kind)));
-    REQUIRE(surfaces.size() == 10);
+    surfaces.emplace_back("patches", make_patch_surface(rational_patches(), "patches"));
+    REQUIRE(surfaces.size() == 11);
 
     Boxes boxes(77);
     for (const auto& [name, surface] : surfaces) {

@@ -5,6 +5,7 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "render/world/world.h"
 #include "scene/read/reading.h"
 #include "shade/optic_weights.h"
 #include "surfaces/surfaces.h"
@@ -143,8 +144,7 @@ void FitSceneMaker::set_mesh(FitScene& scene, std::size_t index, const Json& jso
 }
 
 void FitSceneMaker::build(FitOptic& optic, const Mesh& mesh, bool with_tracer) const {
-    optic.surface = mesh.primitive ? make_primitive_surface(*mesh.primitive)
-                                   : make_limit_surface(mesh.cage, mesh.name, {});
+    optic.surface = make_plain_surface(mesh, {});
     optic.tracer = with_tracer ? make_tracer(*optic.surface) : nullptr;
     optic.moved = optic.unmoved = {};
     optic.is_moved = false;

@@ -137,10 +137,15 @@ bool has_same_normals(const Material& a, const Material& b) {
 
 }  // namespace
 
+std::unique_ptr<Surface> make_plain_surface(const Mesh& mesh, const Warn& warn) {
+    if (mesh.primitive) return make_primitive_surface(*mesh.primitive);
+    if (!mesh.patches.empty()) return make_patch_surface(mesh.patches, mesh.name);
+    return make_limit_surface(mesh.cage, mesh.name, warn);
+}
+
 std::shared_ptr<const Surface> make_optic_surface(const Scene& scene, Id id, const Warn& warn) {
     const Mesh& mesh = scene.meshes[id];
-    std::unique_ptr<Surface> surface = mesh.primitive ? make_primitive_surface(*mesh.primitive)
-                                                      : make_limit_surface(mesh.cage, mesh.name, warn);
+    std::unique_ptr<Surface> surface = make_plain_surface(mesh, warn);
     if (mesh.maps_normals) {
         std::optional<TexturePlaces> places = mesh.primitive
                                                   ? places_on_primitive(*mesh.primitive)

@@ -56,6 +56,8 @@ struct World {
     std::vector<std::string> mesh_digests;  // of scene.meshes, once change_scene has asked for them
 };
 
+/// An optic's shape with its own normals, whatever else its mesh says of them.
+std::unique_ptr<Surface> make_plain_surface(const Mesh& mesh, const Warn& warn);
 /// The exact surface of an optic, as a world of that scene has it. Throws InputError where its cage cannot be
 /// used.
 std::shared_ptr<const Surface> make_optic_surface(const Scene& scene, Id mesh, const Warn& warn);

@@ -58,6 +58,7 @@ class SceneCheck {
     }
     void object(const Mesh& whole, const std::string& place) const;
     void optic(const Mesh& mesh, const std::string& place) const;
+    void patch(const RationalPatch& patch, const std::string& place) const;
 
     const Scene& scene_;
 };
@@ -170,6 +171,18 @@ void SceneCheck::object(const Mesh& whole, const std::string& place) const {
                 require(is_finite(at_corner), place + "/bakedLight", "is not finite");
 }
 
+void SceneCheck::patch(const RationalPatch& patch, const std::string& place) const {
+    const auto is_degree = [](int degree) { return degree >= 1 && degree <= kHighestPatchDegree; };
+    require(is_degree(patch.degree_u) && is_degree(patch.degree_v), place,
+            "has a degree that is too high or low");
+    const std::size_t count = patch.row() * (static_cast<std::size_t>(patch.degree_v) + 1);
+    require(patch.points.size() == count, place, "needs as many points as its degrees say");
+    require(is_finite(patch.origin), place, "is not finite");
+    for (const Vec4& point : patch.points)
+        require(is_finite(Vec3(point)) && is_finite(point.w) && point.w > 0, place,
+                "has a point that is not finite, or a weight that is not above 0");
+}
+
 void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {
     require(mesh.material < scene_.materials.size(), place + "/material", "is no material of the scene");
     const double roughness = scene_.materials[mesh.material].roughness_factor;
@@ -177,7 +190,9 @@ void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {
             "has a roughness that is not in 0..0.3");
     require(mesh.resolution >= 1 && mesh.resolution <= kMaxResolution, place + "/resolution",
             "is not in 1.." + std::to_string(kMaxResolution));
-    require(mesh.primitive || !mesh.cage.points.empty(), place, "an optic has a primitive or a cage");
+    require(mesh.primitive || !mesh.patches.empty() || !mesh.cage.points.empty(), place,
+            "an optic has a primitive, patches or a cage");
+    for (const RationalPatch& one : mesh.patches) patch(one, place + "/patches");
     require(mesh.cage_uvs.empty() || mesh.cage_uvs.size() == mesh.cage.face_vertex_indices.size(),
             place + "/uvs", "needs one entry per corner of a face, or none");
     require(!mesh.maps_normals || scene_.materials[mesh.material].normal_texture.picture, place,

@@ -2,84 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "base/util/check.h"
 
 namespace trilens {
-namespace {
-
-using Weights = std::array<double, 4>;
-
-/// The four cubic Bernstein polynomials, their first or their second derivatives.
-Weights bernstein(double t, int derivative) {
-    const double s = 1 - t;
-    if (derivative == 0) return {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
-    if (derivative == 1) return {-3 * s * s, 3 * s * (s - 2 * t), 3 * t * (2 * s - t), 3 * t * t};
-    return {6 * s, 6 * (t - 2 * s), 6 * (s - 2 * t), 6 * t};
-}
-
-/// Each row and then each column of 4 x 4 points by a matrix.
-BezierPatch in_basis(const BezierPatch& points, const std::array<Weights, 4>& matrix) {
-    BezierPatch along_u{}, both{};
-    for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t k = 0; k < 4; ++k) along_u[4 * j + i] += matrix[i][k] * points[4 * j + k];
-    for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t k = 0; k < 4; ++k) both[4 * j + i] += matrix[j][k] * along_u[4 * k + i];
-    return both;
-}
-
-// Of points of the one basis those of the other, for the same cubic.
-constexpr std::array<Weights, 4> kSplineOfBezier{
-    {{6, -7, 2, 0}, {0, 2, -1, 0}, {0, -1, 2, 0}, {0, 2, -7, 6}}};
-constexpr std::array<Weights, 4> kBezierOfSpline{{{1 / 6., 4 / 6., 1 / 6., 0},
-                                                  {0, 4 / 6., 2 / 6., 0},
-                                                  {0, 2 / 6., 4 / 6., 0},
-                                                  {0, 1 / 6., 4 / 6., 1 / 6.}}};
-
-/// Where the normal has no direction it is that of a place this share of the way to the patch's middle.
-constexpr double kStepInward = 0x1p-20;
-
-Vec3 normal_near(const BezierPatch& patch, const Vec2& uv) {
-    const Vec3 here = evaluate(patch, uv).normal;
-    if (here != Vec3(0)) return here;
-    return evaluate(patch, uv + kStepInward * (Vec2(0.5) - uv)).normal;
-}
-
-/// The patch's edges, each from its lower to its upper parameter.
-std::array<BezierCurve, 4> edges_of(const BezierPatch& p) {
-    return {{{p[0], p[1], p[2], p[3]},
-             {p[12], p[13], p[14], p[15]},
-             {p[0], p[4], p[8], p[12]},
-             {p[3], p[7], p[11], p[15]}}};
-}
-
-double size_of(const std::vector<BezierPatch>& patches) {
-    Box box;
-    for (const BezierPatch& patch : patches)
-        for (const Vec3& point : patch) box.include(point);
-    if (box.empty()) return 0;
-    const Vec3 size = box.size();
-    return std::max({size.x, size.y, size.z});
-}
-
-bool is_one_point(const BezierCurve& curve, double tolerance) {
-    return std::all_of(curve.begin(), curve.end(),
-                       [&](const Vec3& point) { return length(point - curve[0]) <= tolerance; });
-}
-
-bool agree(const BezierCurve& a, const BezierCurve& b, double tolerance) {
-    const auto apart = [&](std::size_t i, std::size_t j) { return length(a[i] - b[j]) > tolerance; };
-    bool along = true, against = true;
-    for (std::size_t k = 0; k < 4; ++k) {
-        along = along && !apart(k, k);
-        against = against && !apart(k, 3 - k);
-    }
-    return along || against;
-}
-
-}  // namespace
 
 BezierPatch coons_patch(const std::array<BezierCurve, 4>& curves) {
     const auto& [low, high, left, right] = curves;
@@ -95,88 +23,132 @@ BezierPatch coons_patch(const std::array<BezierCurve, 4>& curves) {
     return patch;
 }
 
-SplineGrid spline_of(const BezierPatch& patch) {
-    const BezierPatch points = in_basis(patch, kSplineOfBezier);
-    return {4, {points.begin(), points.end()}};
+namespace {
+
+std::vector<double> uniform_knots(int points) {
+    std::vector<double> knots;
+    for (int k = 0; k < points + 4; ++k) knots.push_back(k);
+    return knots;
 }
 
-std::vector<BezierPatch> beziers_of(const SplineGrid& spline) {
-    std::vector<BezierPatch> patches;
-    for (int row = 0; row + 3 < spline.rows(); ++row)
-        for (int column = 0; column + 3 < spline.columns; ++column) {
-            BezierPatch controls;
-            for (int j = 0; j < 4; ++j)
-                for (int i = 0; i < 4; ++i)
-                    controls[static_cast<std::size_t>(4 * j + i)] =
-                        spline.points[static_cast<std::size_t>((row + j) * spline.columns + column + i)];
-            patches.push_back(in_basis(controls, kBezierOfSpline));
+}  // namespace
+
+SplineGrid uniform_spline(int columns, std::vector<Vec3> points) {
+    SplineGrid grid;
+    grid.columns = columns;
+    grid.points = std::move(points);
+    grid.knots = {uniform_knots(columns), uniform_knots(grid.rows())};
+    return grid;
+}
+
+SplineGrid spline_of(const BezierPatch& patch) {
+    const std::vector<double> knots{0, 0, 0, 0, 1, 1, 1, 1};
+    SplineGrid grid;
+    grid.points.assign(patch.begin(), patch.end());
+    grid.knots = {knots, knots};
+    return grid;
+}
+
+std::string knot_fault(const std::vector<double>& knots, int degree, int points) {
+    const auto many = static_cast<std::size_t>(points + degree + 1);
+    if (points < degree + 1)
+        return std::to_string(points) + " points are fewer than a degree of " + std::to_string(degree) +
+               " needs, which is " + std::to_string(degree + 1);
+    if (knots.size() != many)
+        return std::to_string(knots.size()) + " knots, not " + std::to_string(many) +
+               ": as many as points (" + std::to_string(points) + ") and the degree (" +
+               std::to_string(degree) + ") and one";
+    const auto first = static_cast<std::size_t>(degree), last = static_cast<std::size_t>(points);
+    std::size_t alike = 1;
+    for (std::size_t k = 1; k < many; ++k) {
+        if (!(knots[k] >= knots[k - 1])) return "knots fall at number " + std::to_string(k + 1);
+        alike = knots[k] == knots[k - 1] ? alike + 1 : 1;
+        const bool is_end = knots[k] == knots[first] || knots[k] == knots[last];
+        if (alike > first + (is_end ? 1 : 0))
+            return "more than " + std::to_string(first + (is_end ? 1 : 0)) +
+                   " knots stand at one place, at number " + std::to_string(k + 1);
+    }
+    return knots[first] < knots[last] ? "" : "all knots between the ends stand at one place";
+}
+
+namespace {
+
+/// The Bezier points between knots[k] and the next one of the degree + 1 controls that matter there: blossoms
+/// by de Boor's algorithm (Ramshaw, Blossoms are polar forms, 1989), all of them means of controls.
+std::vector<Vec4> bezier_row(const std::vector<Vec4>& controls, const std::vector<double>& knots,
+                             std::size_t k) {
+    const std::size_t degree = controls.size() - 1;
+    std::vector<Vec4> row;
+    for (std::size_t i = 0; i <= degree; ++i) {
+        std::vector<Vec4> d = controls;
+        for (std::size_t r = 1; r <= degree; ++r) {
+            const double at = knots[r <= i ? k + 1 : k];
+            for (std::size_t j = degree; j >= r; --j) {
+                const double low = knots[k - degree + j], high = knots[k + j - r + 1];
+                const double share = (at - low) / (high - low);
+                d[j] = (1 - share) * d[j - 1] + share * d[j];
+            }
         }
+        row.push_back(d[degree]);
+    }
+    return row;
+}
+
+/// The numbers of knots that a patch begins at.
+std::vector<std::size_t> spans_of(const std::vector<double>& knots, int degree) {
+    std::vector<std::size_t> spans;
+    const auto p = static_cast<std::size_t>(degree);
+    for (std::size_t k = p; k + p + 1 < knots.size(); ++k)
+        if (knots[k] < knots[k + 1]) spans.push_back(k);
+    return spans;
+}
+
+/// The patch that begins at knot (u, v).
+RationalPatch patch_at(const SplineGrid& spline, std::size_t u, std::size_t v) {
+    const auto p = static_cast<std::size_t>(spline.degree[0]), q = static_cast<std::size_t>(spline.degree[1]);
+    const auto columns = static_cast<std::size_t>(spline.columns);
+    RationalPatch patch{spline.degree[0], spline.degree[1], spline.points[(v - q) * columns + u - p], {}};
+    std::vector<std::vector<Vec4>> rows;
+    for (std::size_t j = v - q; j <= v; ++j) {
+        std::vector<Vec4> controls;
+        for (std::size_t i = u - p; i <= u; ++i) {
+            const std::size_t at = j * columns + i;
+            const double w = spline.weights.empty() ? 1 : spline.weights[at];
+            controls.emplace_back(w * (spline.points[at] - patch.origin), w);
+        }
+        rows.push_back(bezier_row(controls, spline.knots[0], u));
+    }
+    patch.points.resize((p + 1) * (q + 1));
+    for (std::size_t i = 0; i <= p; ++i) {
+        std::vector<Vec4> column;
+        for (const std::vector<Vec4>& row : rows) column.push_back(row[i]);
+        column = bezier_row(column, spline.knots[1], v);
+        for (std::size_t j = 0; j <= q; ++j) patch.points[j * (p + 1) + i] = column[j];
+    }
+    return patch;
+}
+
+}  // namespace
+
+std::vector<RationalPatch> beziers_of(const SplineGrid& spline) {
+    std::vector<RationalPatch> patches;
+    for (const std::size_t v : spans_of(spline.knots[1], spline.degree[1]))
+        for (const std::size_t u : spans_of(spline.knots[0], spline.degree[0]))
+            patches.push_back(patch_at(spline, u, v));
     return patches;
 }
 
-SurfacePoint evaluate(const BezierPatch& patch, const Vec2& uv) {
-    const auto sum = [&](int along_u, int along_v) {
-        const Weights a = bernstein(uv.x, along_u), b = bernstein(uv.y, along_v);
-        Vec3 total(0);
-        for (std::size_t j = 0; j < 4; ++j)
-            for (std::size_t i = 0; i < 4; ++i) total += a[i] * b[j] * patch[4 * j + i];
-        return total;
-    };
-    SurfacePoint point;
-    point.position = sum(0, 0);
-    point.du = sum(1, 0);
-    point.dv = sum(0, 1);
-    point.duu = sum(2, 0);
-    point.duv = sum(1, 1);
-    point.dvv = sum(0, 2);
-    double extent = 0;
-    for (const Vec3& control : patch) extent = std::max(extent, length(control - patch[0]));
-    const Vec3 normal = cross(point.du, point.dv);
-    // Less is rounding of derivatives and no direction.
-    const double least = 1e-12 * extent * std::max(length(point.du), length(point.dv));
-    point.normal = length(normal) > least ? normalize(normal) : Vec3(0);
-    return point;
-}
-
-Cage spline_cage(const std::vector<SplineGrid>& splines) {
-    Cage cage;
-    cage.interpolate_boundary = InterpolateBoundary::kNothing;
-    for (const SplineGrid& spline : splines) {
-        const auto first = static_cast<int>(cage.points.size());
-        cage.points.insert(cage.points.end(), spline.points.begin(), spline.points.end());
-        const int columns = spline.columns, rows = spline.rows();
-        for (int j = 0; j + 1 < rows; ++j)
-            for (int i = 0; i + 1 < columns; ++i) {
-                const bool at_border = i == 0 || j == 0 || i + 2 == columns || j + 2 == rows;
-                if (at_border) cage.hole_indices.push_back(static_cast<int>(cage.face_vertex_counts.size()));
-                cage.face_vertex_counts.push_back(4);
-                const int corner = first + j * columns + i;
-                for (const int vertex : {corner, corner + 1, corner + columns + 1, corner + columns})
-                    cage.face_vertex_indices.push_back(vertex);
-            }
+void turn_around(SplineGrid& spline) {
+    for (int row = 0; row < spline.rows(); ++row) {
+        std::reverse(spline.points.begin() + row * spline.columns,
+                     spline.points.begin() + (row + 1) * spline.columns);
+        if (!spline.weights.empty())
+            std::reverse(spline.weights.begin() + row * spline.columns,
+                         spline.weights.begin() + (row + 1) * spline.columns);
     }
-    return cage;
-}
-
-Box patch_bounds(const Cage& cage) {
-    Box box;
-    std::size_t hole = 0;
-    for (std::size_t face = 0; face < cage.face_vertex_counts.size(); ++face) {
-        if (hole < cage.hole_indices.size() && cage.hole_indices[hole] == static_cast<int>(face)) {
-            ++hole;
-            continue;
-        }
-        // Its first corner is the second of the second row of its 16 points, its last one stands a row below.
-        const int corner = cage.face_vertex_indices[4 * face];
-        const int columns = cage.face_vertex_indices[4 * face + 3] - corner;
-        SplineGrid spline;
-        for (int k = 0; k < 16; ++k)
-            spline.points.push_back(
-                cage.points[static_cast<std::size_t>(corner + (k / 4 - 1) * columns + k % 4 - 1)]);
-        const std::vector<BezierPatch> one = beziers_of(spline);
-        for (const Vec3& point : one[0]) box.include(point);
-    }
-    return box;
+    std::vector<double>& knots = spline.knots[0];
+    std::reverse(knots.begin(), knots.end());
+    for (double& knot : knots) knot = -knot;
 }
 
 namespace {
@@ -207,17 +179,22 @@ void add_quad(const std::array<PatchCorner, 4>& ring, double tolerance, PolygonM
 
 }  // namespace
 
-PolygonMesh patch_polygons(const std::vector<BezierPatch>& patches, int n) {
+PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n) {
     TRILENS_CHECK(n >= 1, "a patch has a quad");
     PolygonMesh mesh;
-    const double tolerance = kSameControl * size_of(patches);
-    for (const BezierPatch& patch : patches) {
+    Box box;
+    for (const RationalPatch& patch : patches) box.include(bounds_of(patch));
+    const Vec3 size = box.size();
+    const double tolerance = kSameControl * std::max({size.x, size.y, size.z});
+    for (const RationalPatch& patch : patches) {
+        const double extent = extent_of(patch);
         std::vector<PatchCorner> lattice;
         for (int j = 0; j <= n; ++j)
             for (int i = 0; i <= n; ++i) {
                 const Vec2 uv(static_cast<double>(i) / n, static_cast<double>(j) / n);
-                lattice.push_back({static_cast<int>(mesh.cage.points.size()), normal_near(patch, uv), uv});
-                mesh.cage.points.push_back(evaluate(patch, uv).position);
+                const SurfacePoint point = evaluate_first_order(patch, uv, extent);
+                lattice.push_back({static_cast<int>(mesh.cage.points.size()), point.normal, uv});
+                mesh.cage.points.push_back(point.position);
             }
         const auto at = [&](int i, int j) { return lattice[static_cast<std::size_t>(j * (n + 1) + i)]; };
         for (int j = 0; j < n; ++j)
@@ -227,21 +204,13 @@ PolygonMesh patch_polygons(const std::vector<BezierPatch>& patches, int n) {
     return mesh;
 }
 
-std::size_t count_open_edges(const std::vector<BezierPatch>& patches) {
-    const double tolerance = kSameControl * size_of(patches);
-    std::vector<BezierCurve> edges;
-    for (const BezierPatch& patch : patches)
-        for (const BezierCurve& edge : edges_of(patch))
-            if (!is_one_point(edge, tolerance)) edges.push_back(edge);
-    // By the middle of their ends, so that only edges near each other are compared.
-    const auto key = [](const BezierCurve& edge) { return edge[0].x + edge[3].x; };
-    std::sort(edges.begin(), edges.end(),
-              [&](const BezierCurve& a, const BezierCurve& b) { return key(a) < key(b); });
-    std::vector<bool> is_shared(edges.size(), false);
-    for (std::size_t a = 0; a < edges.size(); ++a)
-        for (std::size_t b = a + 1; b < edges.size() && key(edges[b]) - key(edges[a]) <= 2 * tolerance; ++b)
-            if (agree(edges[a], edges[b], tolerance)) is_shared[a] = is_shared[b] = true;
-    return static_cast<std::size_t>(std::count(is_shared.begin(), is_shared.end(), false));
+std::size_t count_open_edges(std::vector<RationalPatch> patches) {
+    const std::vector<FaceBorder> borders = join_patches(patches);
+    std::size_t open = 0;
+    for (std::size_t p = 0; p < patches.size(); ++p)
+        for (std::size_t side = 0; side < 4; ++side)
+            if (borders[p].sides[side].edge == kNone && !is_collapsed(patches[p], side)) ++open;
+    return open;
 }
 
 }  // namespace trilens

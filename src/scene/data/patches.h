@@ -1,67 +1,67 @@
-// Spline patches of a scene: bicubic Bezier patches, uniform B-splines and Coons patches, each turned exactly
-// into the cage whose limit surface it is, or into polygons.
+// Spline patches of a scene: NURBS, uniform B-splines, bicubic Bezier and Coons patches, each turned exactly
+// into the rational Bezier patches that it is made of, and those of objects into polygons.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
-#include "base/description/optic_description.h"
-#include "base/math/box.h"
 #include "base/math/vec.h"
-#include "base/raymesh/surface.h"
+#include "base/raymesh/rational_patch.h"
 #include "base/util/names.h"
 #include "scene/data/polygons.h"
 
 namespace trilens {
 
-enum class PatchKind { kBezier, kBspline, kCoons };
+enum class PatchKind { kBezier, kBspline, kCoons, kNurbs };
 
 template <>
 struct EnumNames<PatchKind> {
     static constexpr std::array kTable{NamedValue<PatchKind>{PatchKind::kBezier, "bezier"},
                                        NamedValue<PatchKind>{PatchKind::kBspline, "bspline"},
-                                       NamedValue<PatchKind>{PatchKind::kCoons, "coons"}};
+                                       NamedValue<PatchKind>{PatchKind::kCoons, "coons"},
+                                       NamedValue<PatchKind>{PatchKind::kNurbs, "nurbs"}};
 };
 
 /// A bicubic Bezier patch: point 4 j + i, u along i and v along j.
 using BezierPatch = std::array<Vec3, 16>;
 using BezierCurve = std::array<Vec3, 4>;
 
-/// Rows of control points of a uniform bicubic B-spline, at least 4 x 4: (columns - 3) x (rows - 3) patches.
-struct SplineGrid {
-    int columns = 4;
-    std::vector<Vec3> points;
-
-    int rows() const { return static_cast<int>(points.size()) / columns; }
-};
-
 /// The Coons patch, blended in both directions, of four cubic curves: the first two run along u, at v = 0 and
 /// 1, the other two along v, at u = 0 and 1. Corners must agree. It is bicubic. [Coons, Surfaces for
 /// Computer-Aided Design of Space Forms, 1967]
 BezierPatch coons_patch(const std::array<BezierCurve, 4>& curves);
 
-/// The one patch as a B-spline of 4 x 4 points.
+/// Control points of a NURBS surface, row by row, u along a row. [Piegl and Tiller, The NURBS Book, 1997]
+struct SplineGrid {
+    int columns = 4;
+    std::vector<Vec3> points;
+    std::vector<double> weights;                 // one per point, > 0; empty: all 1
+    std::array<int, 2> degree{3, 3};             // along u and v, 1 .. kHighestPatchDegree
+    std::array<std::vector<double>, 2> knots{};  // of either direction as many as points and the degree + 1
+
+    int rows() const { return static_cast<int>(points.size()) / columns; }
+};
+
+/// A bicubic grid with knots at whole numbers: at least 4 x 4 points.
+SplineGrid uniform_spline(int columns, std::vector<Vec3> points);
 SplineGrid spline_of(const BezierPatch& patch);
-/// The patches of a B-spline, row by row.
-std::vector<BezierPatch> beziers_of(const SplineGrid& spline);
 
-/// Position and derivatives, the normal where du x dv has one, zero elsewhere.
-SurfacePoint evaluate(const BezierPatch& patch, const Vec2& uv);
+/// What is wrong with the knots for so many points in their direction; empty: nothing. They must not fall,
+/// and may stand at one place as often as the degree at most, once more at either end.
+std::string knot_fault(const std::vector<double>& knots, int degree, int points);
 
-/// The cage whose limit surface the splines are: faces along borders are holes, for a border that is not
-/// interpolated has no limit.
-Cage spline_cage(const std::vector<SplineGrid>& splines);
+/// The patches between the knots, row by row, each over the unit square. Knots have no fault.
+std::vector<RationalPatch> beziers_of(const SplineGrid& spline);
 
-/// The box of the Bezier points of a spline_cage's patches, which holds them.
-Box patch_bounds(const Cage& cage);
+/// The same surface with u running the other way.
+void turn_around(SplineGrid& spline);
 
 /// n x n quads per patch, triangles where an edge is one point, with the patch's normals and uv.
-PolygonMesh patch_polygons(const std::vector<BezierPatch>& patches, int n);
+PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n);
 
-/// Edges that no other edge runs along, point by point, in either direction; those that are one point do not
-/// count. Tolerance: kSameControl.
-std::size_t count_open_edges(const std::vector<BezierPatch>& patches);
-inline constexpr double kSameControl = 1e-9;  // of the largest side of the box of all points
+/// Edges that no other edge runs along, as join_patches finds them; those that are one point do not count.
+std::size_t count_open_edges(std::vector<RationalPatch> patches);
 
 }  // namespace trilens

@@ -15,6 +15,7 @@
 #include "base/description/optic_description.h"
 #include "base/image/height_grid.h"
 #include "base/math/vec.h"
+#include "base/raymesh/rational_patch.h"
 #include "base/raymesh/triangle_scene.h"
 #include "volume/volume_data.h"
 
@@ -114,13 +115,14 @@ struct Mesh {
     NormalOverride normals;                 // optic
     int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside
 
-    // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
+    // An object has `object`; an optic has `primitive`, `patches` or `cage` (world frame, transform applied).
     ObjectMesh object;
     std::optional<Primitive> primitive;
     Cage cage;
-    std::vector<Vec2> cage_uvs;  // where normals are mapped: per entry of cage.face_vertex_indices
-    bool maps_normals = false;   // optic: its material's normal map turns its normals
-    bool of_patches = false;     // face_count patches; an optic's cage has them as B-splines
+    std::vector<Vec2> cage_uvs;          // where normals are mapped: per entry of cage.face_vertex_indices
+    bool maps_normals = false;           // optic: its material's normal map turns its normals
+    bool of_patches = false;             // face_count patches
+    std::vector<RationalPatch> patches;  // of an optic
     std::shared_ptr<const Terrain> terrain;  // object: how it was made, where of heights
 };
 

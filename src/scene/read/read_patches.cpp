@@ -12,12 +12,23 @@ namespace trilens {
 const std::vector<Field<WrittenPatch>>& patch_fields() {
     static const std::vector<Field<WrittenPatch>> fields{
         choice("type", &WrittenPatch::kind).without_default(),
-        part<WrittenPatch>("points", list_of(ref("vec3"), 16),
+        part<WrittenPatch>("points", list_of(ref("vec3"), 4),
                            "bezier: 16 control points, row by row. bspline: rows of a uniform bicubic "
-                           "B-spline, at least 4 x 4.")
-            .of({"bezier!", "bspline!"}),
-        setting("columns", &WrittenPatch::columns, whole_in(4, kMostSplineColumns), "Points of a row.")
-            .of({"bspline"}),
+                           "B-spline, at least 4 x 4. nurbs: rows of control points.")
+            .of({"bezier!", "bspline!", "nurbs!"}),
+        setting("columns", &WrittenPatch::columns, whole_in(2, kMostSplineColumns), "Points of a row.")
+            .of({"bspline", "nurbs"}),
+        part<WrittenPatch>("degree", several(2, whole_in(1, kHighestPatchDegree)),
+                           "Along u and along v; 3 by default.")
+            .of({"nurbs"}),
+        part<WrittenPatch>("weights", list_of(ref("number"), 4),
+                           "One per point, above 0; without them all are 1.")
+            .of({"nurbs"}),
+        part<WrittenPatch>("knots", several(2, list_of(ref("number"), 4)),
+                           "Along u and along v: as many as points there and the degree and one; they do not "
+                           "fall, and stand at one place as often as the degree at most, once more at the "
+                           "ends.")
+            .of({"nurbs!"}),
         part<WrittenPatch>("curves", several(4, several(4, ref("vec3"))),
                            "Cubic Bezier curves: two along u, at v = 0 and 1, and two along v, at u = 0 and "
                            "1. Their ends agree.")
@@ -28,48 +39,13 @@ const std::vector<Field<WrittenPatch>>& patch_fields() {
 
 Json patch_schema() {
     return object_schema({.title = "a patch",
-                          .description = "A bicubic surface over (u, v), front where du x dv points.",
+                          .description = "A spline surface over (u, v), front where du x dv points.",
                           .required = {"type"},
                           .kind_title = "a # patch"},
                          patch_fields());
 }
 
 namespace {
-
-/// Control points as they are written, of either basis.
-struct Patches {
-    std::vector<SplineGrid> grids;
-    std::vector<bool> are_splines;  // otherwise one Bezier patch
-
-    static BezierPatch bezier_of(const SplineGrid& grid) {
-        BezierPatch patch;
-        std::copy_n(grid.points.begin(), 16, patch.begin());
-        return patch;
-    }
-    std::vector<BezierPatch> beziers() const {
-        std::vector<BezierPatch> patches;
-        for (std::size_t i = 0; i < grids.size(); ++i) {
-            if (!are_splines[i]) {
-                patches.push_back(bezier_of(grids[i]));
-                continue;
-            }
-            for (const BezierPatch& patch : beziers_of(grids[i])) patches.push_back(patch);
-        }
-        return patches;
-    }
-    std::vector<SplineGrid> splines() const {
-        std::vector<SplineGrid> all;
-        for (std::size_t i = 0; i < grids.size(); ++i)
-            all.push_back(are_splines[i] ? grids[i] : spline_of(bezier_of(grids[i])));
-        return all;
-    }
-};
-
-std::vector<Vec3> read_controls(const Node& node) {
-    std::vector<Vec3> points;
-    for (const Json& point : node.json) points.push_back(to_vec3(point));
-    return points;
-}
 
 std::array<BezierCurve, 4> read_curves(const Node& node) {
     std::array<BezierCurve, 4> curves;
@@ -89,44 +65,89 @@ std::array<BezierCurve, 4> read_curves(const Node& node) {
     return curves;
 }
 
-SplineGrid read_grid(const Node& node, PatchKind kind, int columns) {
-    if (kind == PatchKind::kCoons) {
-        const BezierPatch patch = coons_patch(read_curves(node["curves"]));
-        return {4, {patch.begin(), patch.end()}};
+std::vector<Vec3> read_controls(const Node& node) {
+    std::vector<Vec3> points;
+    for (const Json& point : node.json) points.push_back(to_vec3(point));
+    return points;
+}
+
+/// Greatest weight of a patch by its least: far more would leave nothing of the digits of what they weigh.
+constexpr double kMostWeights = 1e9;
+
+std::vector<double> read_weights(const Node& node, std::size_t points) {
+    std::vector<double> weights;
+    for (const Json& weight : node.json) weights.push_back(weight.get<double>());
+    if (weights.size() != points)
+        node.fail(std::to_string(weights.size()) + " weights of " + std::to_string(points) + " points");
+    for (std::size_t k = 0; k < points; ++k)
+        if (!(weights[k] > 0)) node[k].fail("a weight must be above 0");
+    const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
+    if (!(*most <= kMostWeights * *least))
+        node.fail("the greatest weight is more than " + describe(kMostWeights) + " times the least");
+    return weights;
+}
+
+void read_nurbs(const Node& node, SplineGrid& grid) {
+    if (node.has("degree"))
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            grid.degree[axis] = node.json.at("degree").at(axis).get<int>();
+    if (node.has("weights")) grid.weights = read_weights(node["weights"], grid.points.size());
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const Node knots = node["knots"][axis];
+        grid.knots[axis] = knots.json.get<std::vector<double>>();
+        const std::string fault =
+            knot_fault(grid.knots[axis], grid.degree[axis], axis == 0 ? grid.columns : grid.rows());
+        if (!fault.empty()) knots.fail(fault);
     }
-    SplineGrid grid{columns, read_controls(node["points"])};
-    const std::size_t count = grid.points.size();
-    if (kind == PatchKind::kBezier && count != 16)
-        node["points"].fail("a Bezier patch has 16 points, not " + std::to_string(count));
-    if (count % static_cast<std::size_t>(columns) != 0 || grid.rows() < 4)
+}
+
+SplineGrid read_grid(const Node& node, const WrittenPatch& written) {
+    if (written.kind == PatchKind::kCoons) return spline_of(coons_patch(read_curves(node["curves"])));
+    std::vector<Vec3> points = read_controls(node["points"]);
+    const std::size_t count = points.size();
+    if (written.kind == PatchKind::kBezier) {
+        if (count != 16) node["points"].fail("a Bezier patch has 16 points, not " + std::to_string(count));
+        BezierPatch patch;
+        std::copy(points.begin(), points.end(), patch.begin());
+        return spline_of(patch);
+    }
+    const auto columns = static_cast<std::size_t>(written.columns);
+    if (written.kind == PatchKind::kNurbs) {
+        if (count % columns != 0)
+            node["points"].fail(std::to_string(count) + " points are not rows of " + std::to_string(columns));
+        SplineGrid grid;
+        grid.columns = written.columns;
+        grid.points = std::move(points);
+        read_nurbs(node, grid);
+        return grid;
+    }
+    if (columns < 4) node["columns"].fail("a cubic B-spline has at least 4 points in a row");
+    if (count % columns != 0 || count / columns < 4)
         node["points"].fail(std::to_string(count) + " points are not at least 4 rows of " +
                             std::to_string(columns));
-    return grid;
+    return uniform_spline(written.columns, std::move(points));
 }
 
 /// In the world.
-Patches read_patches(const Node& mesh) {
-    Patches patches;
+std::vector<RationalPatch> read_patches(const Node& mesh) {
+    std::vector<SplineGrid> grids;
     const Node list = mesh["patches"];
     PolygonMesh places;
     for (std::size_t i = 0; i < list.size(); ++i) {
         WrittenPatch written;
         read_fields(list[i], patch_fields(), written);
-        patches.grids.push_back(read_grid(list[i], written.kind, written.columns));
-        patches.are_splines.push_back(written.kind == PatchKind::kBspline);
-        const std::vector<Vec3>& points = patches.grids.back().points;
+        grids.push_back(read_grid(list[i], written));
+        const std::vector<Vec3>& points = grids.back().points;
         places.cage.points.insert(places.cage.points.end(), points.begin(), points.end());
     }
     place_mesh(places, mesh);
     auto placed = places.cage.points.begin();
-    const bool turned = mirrors(read_transform(mesh));
-    for (SplineGrid& grid : patches.grids) {
+    std::vector<RationalPatch> patches;
+    for (SplineGrid& grid : grids) {
         std::copy_n(placed, grid.points.size(), grid.points.begin());
         placed += static_cast<std::ptrdiff_t>(grid.points.size());
-        // u the other way round, so that fronts stay fronts.
-        for (int row = 0; turned && row < grid.rows(); ++row)
-            std::reverse(grid.points.begin() + row * grid.columns,
-                         grid.points.begin() + (row + 1) * grid.columns);
+        if (mirrors(read_transform(mesh))) turn_around(grid);  // so that fronts stay fronts
+        for (RationalPatch& patch : beziers_of(grid)) patches.push_back(std::move(patch));
     }
     return patches;
 }
@@ -134,12 +155,10 @@ Patches read_patches(const Node& mesh) {
 }  // namespace
 
 void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& reading) {
-    const Patches patches = read_patches(node);
-    const std::vector<BezierPatch> beziers = patches.beziers();
-    mesh.cage = spline_cage(patches.splines());
+    mesh.patches = read_patches(node);
     mesh.of_patches = true;
-    mesh.face_count = beziers.size();
-    if (const std::size_t open = is_glass ? count_open_edges(beziers) : 0; open > 0)
+    mesh.face_count = mesh.patches.size();
+    if (const std::size_t open = is_glass ? count_open_edges(mesh.patches) : 0; open > 0)
         reading.warn(node.place,
                      std::to_string(open) +
                          " edges of patches have no other along them: this glass is one interface, "
@@ -147,10 +166,10 @@ void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& re
 }
 
 PolygonMesh read_object_patches(const Node& node, Mesh& mesh) {
-    const std::vector<BezierPatch> beziers = read_patches(node).beziers();
+    const std::vector<RationalPatch> patches = read_patches(node);
     mesh.of_patches = true;
-    mesh.face_count = beziers.size();
-    return patch_polygons(beziers, mesh.resolution);
+    mesh.face_count = patches.size();
+    return patch_polygons(patches, mesh.resolution);
 }
 
 }  // namespace trilens
