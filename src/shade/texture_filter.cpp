@@ -10,10 +10,14 @@ namespace trilens {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLeastTexels = 1.75;   // of a footprint's shorter side: beyond a level's own blur, sqrt(3)
+constexpr double kLeastTexels = 4;   // of a footprint's shorter side: beyond a level's own blur, sqrt(3)
 constexpr double kMostAnisotropy = 32;  // how often a footprint may be as long as wide
-constexpr double kPointTexels = 0.5;    // shorter sides are points
-constexpr double kMostTexels = 1e9;     // longer sides than this are as good as infinite
+constexpr double kPointTexels = 0.05;   // shorter sides are points
+constexpr double kPlacesPerTexel = 4;   // along a side, while it is short; then one
+constexpr double kMorePlaces = 6;       // than one per texel, at most
+constexpr int kMostWindow = 256;        // texels that are weighed
+constexpr int kMostSlanted = 2;  // how many times as many places its parallelogram may take as its rectangle
+constexpr double kMostTexels = 1e9;  // longer sides than this are as good as infinite
 
 /// What part a coarser texel has of each finer one along an axis: at most three, for sides that are odd.
 struct Taps {
@@ -78,6 +82,87 @@ Footprint turned_square(Vec2 a, Vec2 b) {
     return {c * a + s * b, c * b - s * a};
 }
 
+/// Places in rows, evenly about a middle.
+struct Lattice {
+    Footprint steps{};
+    std::array<int, 2> counts{1, 1};
+
+    int size() const { return counts[0] * counts[1]; }
+    Vec2 offset(int i, int j) const {
+        return (i + 0.5 - 0.5 * counts[0]) * steps[0] + (j + 0.5 - 0.5 * counts[1]) * steps[1];
+    }
+};
+
+/// Over a parallelogram whose sides are in texels, with its second moments.
+Lattice lattice_over(const Footprint& sides) {
+    Lattice lattice;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double texels = length(sides[k]);
+        if (texels <= kPointTexels) continue;
+        const int count =
+            static_cast<int>(std::ceil(texels + std::min((kPlacesPerTexel - 1) * texels, kMorePlaces))) + 1;
+        lattice.counts[k] = count;
+        lattice.steps[k] = sides[k] / std::sqrt(double(count) * count - 1);
+    }
+    return lattice;
+}
+
+Vec3 mean_of_lookups(const Texture& texture, const TextureSampler& wrap, const Vec2& middle,
+                     const Lattice& lattice) {
+    Vec3 sum(0);
+    for (int j = 0; j < lattice.counts[1]; ++j)
+        for (int i = 0; i < lattice.counts[0]; ++i)
+            sum += lookup(texture, wrap, middle + lattice.offset(i, j));
+    return sum / double(lattice.size());
+}
+
+/// The mean of look-ups at a lattice's places. Neighbouring places share their texels: first it is found how
+/// much each texel of a window weighs.
+Vec3 mean_at(const Texture& texture, const TextureSampler& wrap, const Vec2& middle, const Lattice& lattice) {
+    const Vec2 size(texture.width, -texture.height);  // rows go downward
+    const Footprint steps{lattice.steps[0] * size, lattice.steps[1] * size};
+    const Vec2 reach = 0.5 * (double(lattice.counts[0] - 1) * glm::abs(steps[0]) +
+                              double(lattice.counts[1] - 1) * glm::abs(steps[1]));
+    const Vec2 at(reduced_place(middle.x, wrap.wrap_s) * size.x - 0.5,
+                  (reduced_place(middle.y, wrap.wrap_t) - 1) * size.y - 0.5);
+    const double left = floor_of(at.x - reach.x), top = floor_of(at.y - reach.y);
+    const double columns = floor_of(at.x + reach.x) - left + 2, rows = floor_of(at.y + reach.y) - top + 2;
+    // Far from a picture whose edges go on forever, its place is reduced to one picture away.
+    if (!(columns * rows <= kMostWindow && reach.x <= texture.width && reach.y <= texture.height))
+        return mean_of_lookups(texture, wrap, middle, lattice);
+
+    std::array<double, kMostWindow> weights;
+    const int width = static_cast<int>(columns), height = static_cast<int>(rows);
+    std::fill_n(weights.begin(), width * height, 0.0);
+    const Vec2 first =
+        at - Vec2(left, top) -
+        0.5 * (double(lattice.counts[0] - 1) * steps[0] + double(lattice.counts[1] - 1) * steps[1]);
+    for (int j = 0; j < lattice.counts[1]; ++j)
+        for (int i = 0; i < lattice.counts[0]; ++i) {
+            const Vec2 place = glm::max(first + double(i) * steps[0] + double(j) * steps[1], Vec2(0));
+            const int x = std::min(static_cast<int>(place.x), width - 2),
+                      y = std::min(static_cast<int>(place.y), height - 2);
+            const double fx = place.x - x, fy = place.y - y;
+            double* const weight = &weights[static_cast<std::size_t>(y * width + x)];
+            weight[0] += (1 - fx) * (1 - fy);
+            weight[1] += fx * (1 - fy);
+            weight[width] += (1 - fx) * fy;
+            weight[width + 1] += fx * fy;
+        }
+    Vec3 sum(0);
+    for (int y = 0; y < height; ++y) {
+        const int row = wrapped_texel(static_cast<long long>(top) + y, texture.height, wrap.wrap_t);
+        for (int x = 0; x < width; ++x) {
+            const double weight = weights[static_cast<std::size_t>(y * width + x)];
+            if (weight == 0) continue;
+            sum += weight *
+                   texel_at(texture,
+                            wrapped_texel(static_cast<long long>(left) + x, texture.width, wrap.wrap_s), row);
+        }
+    }
+    return sum / double(lattice.size());
+}
+
 }  // namespace
 
 std::size_t MipMap::level_count() const {
@@ -99,8 +184,9 @@ const Texture& MipMap::level(std::size_t level) const {
 
 Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint) {
     const Vec2 texels(map.texture()->width, map.texture()->height);
-    const Footprint sides = turned_square(footprint[0] * texels, footprint[1] * texels);
-    double longer = length(sides[0]), shorter = length(sides[1]);
+    Footprint sides{footprint[0] * texels, footprint[1] * texels};
+    Footprint turned = turned_square(sides[0], sides[1]);
+    const double longer = length(turned[0]), shorter = length(turned[1]);
     if (longer <= kPointTexels) return lookup(*map.texture(), wrap, place);
     // Also where a side is no number: the mean of the whole picture.
     if (!(longer < kMostTexels && shorter <= longer))
@@ -108,32 +194,29 @@ Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, co
 
     // The finest level at which the footprint is less than twice as wide as it must be.
     std::size_t level = 0;
+    double shrunk = 1;
     for (double width = std::max(shorter, longer / kMostAnisotropy);
          width >= 2 * kLeastTexels && level + 1 < map.level_count(); width /= 2) {
         ++level;
-        longer /= 2;
-        shorter /= 2;
+        shrunk /= 2;
     }
     // A level's texels are means, and are interpolated: both blur, by this much of a side's square more than
-    // the picture's own do. The places looked up have the second moments of what is left of the sides.
-    const double blur = 3 * (1 - std::ldexp(1.0, -2 * static_cast<int>(level)));
-    const auto places = [blur](double side) {
-        const double rest = std::sqrt(std::max(0.0, side * side - blur));
-        if (rest <= kPointTexels) return std::pair(1, 0.0);
-        const int count = static_cast<int>(std::ceil(rest)) + 1;
-        return std::pair(count, rest / side / std::sqrt(double(count) * count - 1));
+    // the picture's own do. What is left of the rectangle's sides is left of the parallelogram along them.
+    const double blur = 3 * (1 - shrunk * shrunk);
+    const auto left_of = [&](double side) {
+        return std::sqrt(std::max(0.0, side * side * shrunk * shrunk - blur)) / side;
     };
-    const auto [along, apart_along] = places(longer);
-    const auto [across, apart_across] = places(shorter);
-    const Texture& seen = map.level(level);
-    const Vec2 step_along = apart_along * sides[0] / texels, step_across = apart_across * sides[1] / texels;
-    Vec3 sum(0);
-    for (int j = 0; j < across; ++j)
-        for (int i = 0; i < along; ++i)
-            sum +=
-                lookup(seen, wrap,
-                       place + (i + 0.5 - 0.5 * along) * step_along + (j + 0.5 - 0.5 * across) * step_across);
-    return sum / double(along * across);
+    const double left_along = left_of(longer), left_across = shorter > 0 ? left_of(shorter) : 0;
+    for (Vec2& side : sides) {
+        const Vec2 along = dot(side, turned[0]) / (longer * longer) * turned[0];
+        side = left_along * along + left_across * (side - along);
+    }
+    turned = {left_along * turned[0], left_across * turned[1]};
+    const Lattice of_sides = lattice_over(sides), of_turned = lattice_over(turned);
+    const Lattice& lattice = of_sides.size() <= kMostSlanted * of_turned.size() ? of_sides : of_turned;
+    const Vec2 to_place = 1.0 / (shrunk * texels);
+    return mean_at(map.level(level), wrap, place,
+                   {{lattice.steps[0] * to_place, lattice.steps[1] * to_place}, lattice.counts});
 }
 
 namespace {

@@ -35,11 +35,11 @@ class MipMap {
 /// What a look-up stands for: a parallelogram about its place, by its two sides.
 using Footprint = std::array<Vec2, 2>;
 
-/// The mean of the picture over a footprint, whose sides are in units of `place`: the rectangle that the
-/// pixel's square becomes when it is turned until its image has right angles, seen at the coarsest level
-/// whose texels are no wider than it, at places a texel apart. One that is more than 32 times as long as wide
-/// is widened. Sides of less than half a texel are points. Against OpenImageIO's anisotropic look-ups, see
-/// the tests: a third of their error, in half of their time.
+/// The mean of the picture over a footprint, whose sides are in units of `place`: seen at the coarsest level
+/// whose texels are no wider than the rectangle that the pixel's square becomes when it is turned until its
+/// image has right angles, at places along the footprint's sides, a quarter of a texel apart where it is
+/// small, else a texel at most. One that is more than 32 times as long as wide is widened. Sides of less than
+/// a twentieth of a texel are points. Against OpenImageIO's anisotropic look-ups, see docs/accuracy.md.
 Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint);
 
 /// Bilinear look-up of a latitude-longitude picture: the middle column is -Z, the right half +X, the top row

@@ -149,6 +149,24 @@ TEST_CASE("shading by fragments: coverage and flat colours to rounding, others n
     }
 }
 
+TEST_CASE(
+    "shading by fragments: textures as near to the mean of many samples as those of as many samples are",
+    "[laws][law][fragments][textures]") {
+    // Water: shadows that end where tiles do. Torus: pixels over which the mirror bends much.
+    for (const std::string scene : {"sphere", "torus", "water"}) {
+        const auto drawn_with = [&](int spp, Shading shading) {
+            return drawn(*fragment_world(scene, spp), shading).image;
+        };
+        const Image truth = drawn_with(24, Shading::kSample);
+        const Difference by_fragment = beauty_difference(drawn_with(8, Shading::kFragment), truth),
+                         by_sample = beauty_difference(drawn_with(8, Shading::kSample), truth);
+        INFO(scene << ": by fragment " << by_fragment.mean << ", rms " << by_fragment.rms << ", by sample "
+                   << by_sample.mean << ", rms " << by_sample.rms);
+        CHECK(by_fragment.mean < by_sample.mean + 3e-4);
+        CHECK(by_fragment.rms < by_sample.rms + 8e-4);
+    }
+}
+
 TEST_CASE("the channel of fragments adds up to their number", "[laws][law][fragments]") {
     const auto world = fragment_world("sphere", 3);
     PictureRequest request;
