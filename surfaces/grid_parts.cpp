@@ -9,7 +9,7 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "surfaces/face_hulls.h"
+#include "surfaces/polynomial/face_hulls.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {

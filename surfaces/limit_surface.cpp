@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "surfaces/checked_cage.h"
-#include "surfaces/face_hulls.h"
 #include "surfaces/limit_patches.h"
 #include "surfaces/polygon_surface.h"
+#include "surfaces/polynomial/face_hulls.h"
 #include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
 #include "surfaces/texture_places.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/util/check.h"
-#include "surfaces/face_hulls.h"
+#include "surfaces/polynomial/face_hulls.h"
 
 namespace trilens {
 namespace {

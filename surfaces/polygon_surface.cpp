@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/util/error.h"
-#include "surfaces/face_hulls.h"
+#include "surfaces/polynomial/face_hulls.h"
 #include "surfaces/texture_places.h"
 
 namespace trilens {

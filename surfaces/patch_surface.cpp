@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/util/error.h"
-#include "surfaces/face_hulls.h"
+#include "surfaces/polynomial/face_hulls.h"
 #include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
 
