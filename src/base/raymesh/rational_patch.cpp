@@ -10,10 +10,10 @@ namespace trilens {
 Vec3 normal_of_tangents(const SurfacePoint& point, double extent) {
     // A cross product below this share of (extent * derivative) is rounding, not a direction: derivatives
     // carry errors of about 1e-16 of the extent, so a normal above it is good to 1e-4.
-    constexpr double kNoise = 1e-12;
+    constexpr double kRounding = 1e-12;
     if (!(extent > 0)) return Vec3(0);
     const Vec3 du = point.du / extent, dv = point.dv / extent, across = cross(du, dv);
-    const bool is_noise = !(length(across) > kNoise * (length(du) + length(dv)));
+    const bool is_noise = !(length(across) > kRounding * (length(du) + length(dv)));
     return is_noise ? Vec3(0) : normalize_or_zero(across);
 }
 
