@@ -156,7 +156,7 @@ Answer lens_text(std::string_view bytes) {
         require(!lens.rows.empty(), "a lens without surfaces");
         require(std::fabs(first_order(lens).focal_length) > 0, "a focal length that is none");
         for (const LensElement& element : lens_elements(lens))
-            require(element.shape.thickness > 0 && element.glass.index >= 1, "a body that is none");
+            require(element.shape.thickness > 0 && element.medium.glass.index >= 1, "a body that is none");
     });
 }
 

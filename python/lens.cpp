@@ -60,7 +60,8 @@ py::object traced(const LensPrescription& lens, const Triple& origin, const Trip
 }  // namespace
 
 void bind_lens(py::module_& module) {
-    py::class_<LensPrescription>(module, "Lens", "A lens by its prescription: surfaces about one axis.")
+    py::class_<LensPrescription>(module, "Lens",
+                                 "A lens by its prescription: surfaces that refract or reflect.")
         .def_readonly("name", &LensPrescription::name, "What its file calls it.")
         .def_property_readonly(
             "surface_count", [](const LensPrescription& lens) { return lens.rows.size(); },
@@ -87,13 +88,18 @@ void bind_lens(py::module_& module) {
              "An exact ray through all surfaces, z along the axis from the first vertex: (origin on the last "
              "surface, unit\n"
              "direction), None where it does not come through.")
+        .def_property_readonly("is_centred", is_centred, "Whether nothing is tilted or decentred.")
         .def("__repr__", [](const LensPrescription& lens) {
             return "<trilens.Lens \"" + lens.name + "\" " + std::to_string(lens.rows.size()) + " surfaces>";
         });
     module.def(
-        "load_lens", [](const std::filesystem::path& file) { return load_lens(file.string()); },
-        py::arg("file"),
-        "The lens of a Zemax file (.zmx), a CODE V sequence (.seq), or JSON with surfaces.\n"
+        "load_lens",
+        [](const std::filesystem::path& file, const std::optional<std::filesystem::path>& glasses) {
+            return load_lens(file.string(), glasses ? glasses->string() : "");
+        },
+        py::arg("file"), py::kw_only(), py::arg("glasses") = py::none(),
+        "The lens of a Zemax file (.zmx), a CODE V sequence (.seq), or JSON with surfaces. `glasses`: a\n"
+        "catalogue (.agf) whose names come before those that are built in.\n"
         "Raises InputError with the file and the line of what cannot be read.");
     module.def("glass_names", glass_names, "The names of the catalogue of glasses.");
 }

@@ -185,8 +185,8 @@ void bind_surface_makers(py::module_& module) {
         "primitive_surface",
         [](const std::string& type, const Triple& center, const Triple& axis, const Triple& tangent,
            double radius, double focal_length, double height, const std::array<double, 2>& size,
-           double thickness, const std::vector<double>& front, const std::vector<double>& back) {
-            const LensPrimitive lens{thickness, lens_side(front, "front"), lens_side(back, "back")};
+           double thickness, const std::vector<double>& front, const std::vector<double>& back, double hole) {
+            const LensPrimitive lens{thickness, lens_side(front, "front"), lens_side(back, "back"), hole};
             const Lengths lengths{radius, focal_length, height, {size[0], size[1]}, lens};
             return SurfacePointer(
                 make_surface({vec3(center), vec3(axis), vec3(tangent), primitive_kind(type, lengths)}));
@@ -198,7 +198,7 @@ void bind_surface_makers(py::module_& module) {
         py::arg("height") = CylinderPrimitive().height,
         py::arg("size") = py::make_tuple(PlanePrimitive().size.x, PlanePrimitive().size.y),
         py::arg("thickness") = LensPrimitive().thickness, py::arg("front") = py::make_tuple(0.0, 1.0),
-        py::arg("back") = py::make_tuple(0.0, 1.0),
+        py::arg("back") = py::make_tuple(0.0, 1.0), py::arg("hole") = LensPrimitive().hole,
         "The exact surface of a \"sphere\", \"paraboloid\", \"cylinder\", \"cone\", \"plane\" or \"lens\", "
         "world frame and units.\n\n"
         "center: of sphere, cylinder and plane, of the cone's base; the paraboloid's apex. axis: from the "
@@ -211,6 +211,7 @@ void bind_surface_makers(py::module_& module) {
         "whose\n"
         "center is its front's vertex; a side is (radius, aperture, conic, coefficients of r^2, r^4, ...), "
         "radius 0 flat.\n"
+        "hole: radius of a hole along the lens' axis.\n"
         "Raises InputError for sizes that are not positive.");
 }
 

@@ -12,10 +12,6 @@
 namespace trilens {
 namespace {
 
-constexpr Id kSideFaces = DiskMap::kFaces;
-constexpr Id kFirstOfEdge = 2 * kSideFaces;
-constexpr Id kFaces = kFirstOfEdge + 4;
-
 /// Points so far beyond a rim, as a share of its size, are on it: no ray slips between a side and the edge.
 constexpr double kRimSlack = 1e-12;
 
@@ -24,19 +20,38 @@ Vec2 mirrored(const Vec2& p) {
     return {p.x, -p.y};
 }
 
-/// The front's faces, the back's, the edge's; corners of the back are numbered from 8 on.
-std::vector<std::array<Id, 4>> lens_corners() {
-    std::vector<std::array<Id, 4>> corners = DiskMap::corners();
-    for (std::array<Id, 4> face : DiskMap::corners()) {
+/// Four quarters between two rims, each given by its corners from -45 degrees on.
+void add_edge(const std::array<Id, 4>& front, const std::array<Id, 4>& back,
+              std::vector<std::array<Id, 4>>& corners) {
+    for (std::size_t k = 0; k < 4; ++k)
+        corners.push_back({front[k], front[(k + 1) % 4], back[(k + 1) % 4], back[k]});
+}
+
+/// The front's faces, the back's, the edge's, the hole's; corners of the back are numbered from 8 on.
+std::vector<std::array<Id, 4>> lens_corners(bool has_hole) {
+    const std::vector<std::array<Id, 4>> side = has_hole ? RingMap::corners() : DiskMap::corners();
+    std::vector<std::array<Id, 4>> corners = side;
+    for (std::array<Id, 4> face : side) {
         for (Id& corner : face) corner += 8;
         corners.push_back(face);
     }
-    // Corners of the rims from -45 degrees on.
-    constexpr std::array<Id, 4> kFront{6, 5, 4, 7}, kBack{13, 14, 15, 12};
-    for (std::size_t k = 0; k < 4; ++k)
-        corners.push_back({kFront[k], kFront[(k + 1) % 4], kBack[(k + 1) % 4], kBack[k]});
+    if (has_hole) {
+        add_edge({5, 4, 7, 6}, {12, 13, 14, 15}, corners);
+        add_edge({0, 1, 2, 3}, {9, 8, 11, 10}, corners);
+    } else {
+        add_edge({6, 5, 4, 7}, {13, 14, 15, 12}, corners);
+    }
     return corners;
 }
+
+/// A cone, or a cylinder, from a rim of the front to one of the back. A hole's is mirrored as the front is:
+/// its outside looks towards the axis.
+struct Edge {
+    double front_radius, back_radius, front_z, back_z;
+    bool of_hole = false;
+
+    Vec2 turned(const Vec2& p) const { return of_hole ? mirrored(p) : p; }
+};
 
 class LensSurface final : public Surface {
   public:
@@ -45,10 +60,18 @@ class LensSurface final : public Surface {
           center_(center),
           world_from_local_(world_from_local),
           disks_{DiskMap(lens.front.aperture), DiskMap(lens.back.aperture)},
-          rims_{sag_of_rim(lens.front), lens.thickness + sag_of_rim(lens.back)},
-          is_closed_form_(is_conicoid(lens.front) && is_conicoid(lens.back)) {}
+          rings_{RingMap(lens.hole, lens.front.aperture), RingMap(lens.hole, lens.back.aperture)},
+          edges_{Edge{lens.front.aperture, lens.back.aperture, sag_of_rim(lens.front),
+                      lens.thickness + sag_of_rim(lens.back)}},
+          side_faces_(lens.hole > 0 ? RingMap::kFaces : DiskMap::kFaces),
+          is_closed_form_(is_conicoid(lens.front) && is_conicoid(lens.back)) {
+        const double s = lens.hole * lens.hole;
+        if (s > 0)
+            edges_.push_back({lens.hole, lens.hole, sag_at(lens.front, s).z,
+                              lens.thickness + sag_at(lens.back, s).z, true});
+    }
 
-    std::size_t face_count() const override { return kFaces; }
+    std::size_t face_count() const override { return borders_.size(); }
     FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
     FaceBorder border(Id face) const override { return borders_[face]; }
     bool has_closed_form() const override { return is_closed_form_; }
@@ -59,8 +82,10 @@ class LensSurface final : public Surface {
     SurfacePoint eval(Id face, const Vec2& uv) const override {
         const auto clamp = [](double x) { return x > 0 ? std::min(x, 1.0) : 0.0; };
         const Vec2 inside(clamp(uv.x), clamp(uv.y));
-        SurfacePoint point = face < kFirstOfEdge ? eval_side(face / kSideFaces, face % kSideFaces, inside)
-                                                 : eval_edge(face - kFirstOfEdge, inside);
+        const Id of_edges = face - std::min(face, 2 * side_faces_);
+        SurfacePoint point = face < 2 * side_faces_
+                                 ? eval_side(face / side_faces_, face % side_faces_, inside)
+                                 : eval_edge(edges_[of_edges / 4], of_edges % 4, inside);
         for (Vec3* vector :
              {&point.position, &point.du, &point.dv, &point.duu, &point.duv, &point.dvv, &point.normal})
             *vector = world_from_local_ * *vector;
@@ -76,7 +101,7 @@ class LensSurface final : public Surface {
         Nearest nearest{t_min};
         meet_side(0, local, nearest);
         meet_side(1, local, nearest);
-        meet_edge(local, nearest);
+        for (std::size_t i = 0; i < edges_.size(); ++i) meet_edge(i, local, nearest);
         if (nearest.place.face == kNone) return std::nullopt;
         return SurfaceHit{nearest.place.face, nearest.place.uv, nearest.t,
                           eval(nearest.place.face, nearest.place.uv)};
@@ -87,7 +112,7 @@ class LensSurface final : public Surface {
     double vertex(Id which) const { return which == 0 ? 0 : lens_.thickness; }
 
     SurfacePoint eval_side(Id which, Id face, const Vec2& uv) const {
-        DiskMap::Flat flat = disks_[which].at(face, uv);
+        DiskMap::Flat flat = edges_.size() > 1 ? rings_[which].at(face, uv) : disks_[which].at(face, uv);
         if (which == 0)
             for (Vec2* part : {&flat.p, &flat.u, &flat.v, &flat.uu, &flat.uv, &flat.vv})
                 *part = mirrored(*part);
@@ -107,19 +132,19 @@ class LensSurface final : public Surface {
         return point;
     }
 
-    SurfacePoint eval_edge(Id quarter, const Vec2& uv) const {
+    SurfacePoint eval_edge(const Edge& edge, Id quarter, const Vec2& uv) const {
         const double angle = kHalfTurn / 4 * (2 * uv.x - 1), speed = kHalfTurn / 2;
-        const Vec2 out = quarter_turns({std::cos(angle), std::sin(angle)}, quarter);
-        const Vec2 around = speed * quarter_turns(out, 1);
-        const double wider = lens_.back.aperture - lens_.front.aperture, height = rims_[1] - rims_[0];
-        const double radius = (1 - uv.y) * lens_.front.aperture + uv.y * lens_.back.aperture;
+        const Vec2 unturned = quarter_turns({std::cos(angle), std::sin(angle)}, quarter);
+        const Vec2 out = edge.turned(unturned), around = speed * edge.turned(quarter_turns(unturned, 1));
+        const double wider = edge.back_radius - edge.front_radius, height = edge.back_z - edge.front_z;
+        const double radius = (1 - uv.y) * edge.front_radius + uv.y * edge.back_radius;
         SurfacePoint point;
-        point.position = Vec3(radius * out, (1 - uv.y) * rims_[0] + uv.y * rims_[1]);
+        point.position = Vec3(radius * out, (1 - uv.y) * edge.front_z + uv.y * edge.back_z);
         point.du = Vec3(radius * around, 0);
         point.dv = Vec3(wider * out, height);
         point.duu = Vec3(-radius * speed * speed * out, 0);
         point.duv = Vec3(wider * around, 0);
-        point.normal = normalize(Vec3(height * out, -wider));
+        point.normal = normalize(Vec3(height * out, -wider)) * (edge.of_hole ? -1.0 : 1.0);
         return point;
     }
 
@@ -150,34 +175,37 @@ class LensSurface final : public Surface {
             const Vec3 point = o + root * d;
             const Vec2 p(point);
             if (!(q * c * point.z < 1) || !(length(p) <= rim)) continue;
-            SurfaceParameter place = disks_[which].place(which == 0 ? mirrored(p) : p);
-            place.face += which * kSideFaces;
+            if (!(length(p) >= lens_.hole * (1 - kRimSlack))) continue;
+            const Vec2 turned = which == 0 ? mirrored(p) : p;
+            SurfaceParameter place =
+                edges_.size() > 1 ? rings_[which].place(turned) : disks_[which].place(turned);
+            place.face += which * side_faces_;
             nearest.t = t;
             nearest.place = place;
         }
     }
 
-    /// A cone, or a cylinder, between the rims.
-    void meet_edge(const Ray& ray, Nearest& nearest) const {
-        const double height = rims_[1] - rims_[0], slack = kRimSlack * lens_.front.aperture;
-        const double slope = (lens_.back.aperture - lens_.front.aperture) / height;
-        const double start = start_at(ray, 0.5 * (rims_[0] + rims_[1]));
+    void meet_edge(std::size_t which, const Ray& ray, Nearest& nearest) const {
+        const Edge& edge = edges_[which];
+        const double height = edge.back_z - edge.front_z, slack = kRimSlack * edge.front_radius;
+        const double slope = (edge.back_radius - edge.front_radius) / height;
+        const double start = start_at(ray, 0.5 * (edge.front_z + edge.back_z));
         const Vec3 from = ray.origin + start * ray.direction;
         const Vec2 o(from), d(ray.direction);
-        const double wide = lens_.front.aperture + slope * (from.z - rims_[0]),
+        const double wide = edge.front_radius + slope * (from.z - edge.front_z),
                      grows = slope * ray.direction.z, distance = length(o);
         for (const double root : quadric_roots({(distance - wide) * (distance + wide),
                                                 dot(o, d) - wide * grows, dot(d, d) - grows * grows})) {
             const double t = start + root;
             if (!(t > nearest.t_min && t < nearest.t)) continue;
             const Vec3 point = from + root * ray.direction;
-            if (!(point.z >= rims_[0] - slack && point.z <= rims_[1] + slack)) continue;
+            if (!(point.z >= edge.front_z - slack && point.z <= edge.back_z + slack)) continue;
             // The edge's quarters begin at -45 degrees.
-            const Vec2 turned = Vec2(point.x - point.y, point.x + point.y);
-            const auto [quarter, along] = quarter_of(turned);
+            const Vec2 p = edge.turned(Vec2(point));
+            const auto [quarter, along] = quarter_of(Vec2(p.x - p.y, p.x + p.y));
             nearest.t = t;
-            nearest.place = {kFirstOfEdge + quarter,
-                             {along, std::clamp((point.z - rims_[0]) / height, 0.0, 1.0)}};
+            nearest.place = {2 * side_faces_ + 4 * static_cast<Id>(which) + quarter,
+                             {along, std::clamp((point.z - edge.front_z) / height, 0.0, 1.0)}};
         }
     }
 
@@ -185,9 +213,11 @@ class LensSurface final : public Surface {
     Vec3 center_;
     Mat3 world_from_local_;
     std::array<DiskMap, 2> disks_;
-    std::array<double, 2> rims_;  // their z
+    std::array<RingMap, 2> rings_;  // instead of disks, around a hole
+    std::vector<Edge> edges_;       // the outer one, then the hole's
+    Id side_faces_;
     bool is_closed_form_;
-    std::vector<FaceBorder> borders_ = borders_of(lens_corners());
+    std::vector<FaceBorder> borders_ = borders_of(lens_corners(lens_.hole > 0));
 };
 
 }  // namespace

@@ -9,9 +9,9 @@
 namespace trilens {
 
 /// The skin of a checked lens whose frame has its z along the axis and its origin at `center`. Faces: the
-/// front side's 5 (a square and four sides mapped onto its disk), the back's 5, and 4 quarters of the edge
-/// (u around, v from the front's rim to the back's). Front is outside. In closed form where both sides are
-/// conicoids. Rims are creases.
+/// front side's 5 (a square and four sides mapped onto its disk; with a hole 4 quarters of a ring), the
+/// back's as many, 4 quarters of the edge (u around, v from the front's rim to the back's), and with a hole
+/// as many of its wall. Front is outside. In closed form where both sides are conicoids. Rims are creases.
 std::unique_ptr<Surface> make_lens_surface(const LensPrimitive& lens, const Vec3& center,
                                            const Mat3& world_from_local);
 

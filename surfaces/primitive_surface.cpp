@@ -105,7 +105,7 @@ void check_sizes(const Primitive& primitive) {
     PrimitiveKind kind = primitive.kind;
     std::visit([](auto& one) { for_each_length(one, check_positive); }, kind);
     if (const auto* lens = std::get_if<LensPrimitive>(&kind))
-        if (const char* fault = lens_fault(lens->front, lens->back, lens->thickness))
+        if (const char* fault = lens_fault(lens->front, lens->back, lens->thickness, lens->hole))
             throw InputError("", "primitive", std::string("no lens: ") + fault);
     const Vec3& c = primitive.center;
     if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z))

@@ -14,7 +14,7 @@ namespace trilens {
 namespace {
 
 struct LensOptions {
-    std::string lens, output;
+    std::string lens, glasses, output;
     std::string line = "d";
     double field = 0, pupil = 0, shift = 0;
     int rings = SpotRequest().rings;
@@ -66,7 +66,10 @@ std::string seidel_text(const SeidelSums& seidel) {
 
 Answer run(const LensOptions& options, Console& console) {
     console.files().reads({options.lens});
-    const LensPrescription lens = load_lens(options.lens);
+    if (!options.glasses.empty()) console.files().reads({options.glasses});
+    const LensPrescription lens = load_lens(options.lens, options.glasses);
+    if (!is_centred(lens))
+        console.warn("first order and Seidel's sums take its surfaces as if none were tilted or decentred");
     const SpectralLine line = *find_named<SpectralLine>(options.line);
     const FirstOrder first = first_order(lens, line);
     Answer answer;
@@ -121,6 +124,11 @@ Command lens_command() {
                         .help = "a Zemax file (.zmx), a CODE V sequence (.seq), or JSON with surfaces",
                         .offer = Offer::kFile,
                         .is_required = true},
+                       {.names = "--glasses",
+                        .target = &options->glasses,
+                        .help = "a catalogue of glasses whose names come before those that are built in",
+                        .value = "FILE.agf",
+                        .offer = Offer::kFile},
                        {.names = "--field",
                         .target = &options->field,
                         .help = "degrees from the axis of the chief ray and of the spot's beam",
@@ -139,7 +147,7 @@ Command lens_command() {
                         .range = {1, 200}},
                        {.names = "--shift",
                         .target = &options->shift,
-                        .help = "the spot's plane behind the paraxial focus",
+                        .help = "the spot's plane behind the paraxial focus, along the light",
                         .range = {-1e9, 1e9}},
                        {.names = "-o,--output",
                         .target = &options->output,

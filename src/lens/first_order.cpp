@@ -8,19 +8,30 @@
 namespace trilens {
 namespace {
 
-/// Curvature at the vertex: the conicoid's with the coefficient of r^2.
+/// Curvature at the vertex: the conicoid's with the coefficients of r^2.
 double vertex_curvature(const LensSide& side) {
-    return side.curvature + 2 * side.coefficients[0];
+    return side.curvature + 2 * (side.coefficients[0] + side.normal_departures[0]);
 }
 
-double index_before(const LensPrescription& lens, std::size_t row, SpectralLine line) {
-    return row == 0 ? 1 : index_at(lens.rows[row - 1].glass, line);
+/// Before the first row and behind each; negative where light runs against the axis.
+std::vector<double> signed_indices(const std::vector<LensMedium>& media, SpectralLine line) {
+    std::vector<double> indices;
+    for (const LensMedium& medium : media) indices.push_back(medium.sense * index_at(medium.glass, line));
+    return indices;
 }
 
-/// The term of r^4 beyond that of the sphere with the vertex' curvature.
+/// The term of r^4 beyond that of the sphere with the vertex' curvature. 1 / sqrt(1 - c^2 r^2) is 1 + c^2 r^2
+/// / 2 so far.
 double figuring(const LensSide& side) {
     const double c = side.curvature, at_vertex = vertex_curvature(side);
-    return (1 + side.conic) * c * c * c / 8 + side.coefficients[1] - at_vertex * at_vertex * at_vertex / 8;
+    const double along_normal = side.normal_departures[1] + side.normal_departures[0] * c * c / 2;
+    return (1 + side.conic) * c * c * c / 8 + side.coefficients[1] + along_normal -
+           at_vertex * at_vertex * at_vertex / 8;
+}
+
+/// How much of the dispersion of the d line's index a medium has.
+double relative_spread(const Glass& glass) {
+    return (index_at(glass, SpectralLine::kF) - index_at(glass, SpectralLine::kC)) / glass.index;
 }
 
 SeidelTerms& operator+=(SeidelTerms& sum, const SeidelTerms& one) {
@@ -37,14 +48,14 @@ double ratio(double a, double b) {
 
 std::vector<ParaxialPlace> paraxial_ray(const LensPrescription& lens, const ParaxialPlace& start,
                                         SpectralLine line) {
+    const std::vector<double> index = signed_indices(lens_media(lens), line);
     std::vector<ParaxialPlace> places;
-    double height = start.height, slope = start.slope, before = 1;
-    for (const LensRow& row : lens.rows) {
-        const double behind = index_at(row.glass, line);
-        slope = (before * slope - height * vertex_curvature(row.side) * (behind - before)) / behind;
+    double height = start.height, slope = start.slope;
+    for (std::size_t i = 0; i < lens.rows.size(); ++i) {
+        const double power = vertex_curvature(lens.rows[i].side) * (index[i + 1] - index[i]);
+        slope = (index[i] * slope - height * power) / index[i + 1];
         places.push_back({height, slope});
-        height += row.thickness * slope;
-        before = behind;
+        height += lens.rows[i].thickness * slope;
     }
     return places;
 }
@@ -57,10 +68,11 @@ FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
     const ParaxialPlace &a = parallel.back(), &b = central.back();
     if (a.slope == 0)
         throw InputError(lens.file, "", "has no focal length: rays along the axis leave along the axis");
+    const std::vector<double> index = signed_indices(lens_media(lens), line);
     FirstOrder first;
-    first.focal_length = -1 / a.slope;
+    first.focal_length = -1 / (index.back() * a.slope);
     first.back_focal_length = -a.height / a.slope;
-    first.back_principal = first.back_focal_length - first.focal_length;
+    first.back_principal = (1 - a.height) / a.slope;
     // The ray from the front focus leaves along the axis: height * a.slope + slope * b.slope = 0.
     first.front_focus = b.slope / a.slope;
     first.front_principal = first.front_focus + first.focal_length;
@@ -80,11 +92,10 @@ FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
         first.f_number = std::fabs(first.focal_length) / (2 * first.entrance_radius);
 
     double petzval = 0;
-    for (std::size_t i = 0; i < lens.rows.size(); ++i) {
-        const double before = index_before(lens, i, line), behind = index_at(lens.rows[i].glass, line);
-        petzval += vertex_curvature(lens.rows[i].side) * (behind - before) / (before * behind);
-    }
-    first.petzval_radius = -ratio(1, petzval);
+    for (std::size_t i = 0; i < lens.rows.size(); ++i)
+        petzval +=
+            vertex_curvature(lens.rows[i].side) * (index[i + 1] - index[i]) / (index[i] * index[i + 1]);
+    first.petzval_radius = -ratio(1, index.back() * petzval);
     return first;
 }
 
@@ -94,23 +105,21 @@ SeidelSums seidel_sums(const LensPrescription& lens, const LensBeam& beam) {
     const ParaxialPlace start{-first.entrance_pupil * beam.field_slope, beam.field_slope};
     const std::vector<ParaxialPlace> chief = paraxial_ray(lens, start);
     const double invariant = -beam.pupil_radius * beam.field_slope;
+    const std::vector<LensMedium> media = lens_media(lens);
+    const std::vector<double> index = signed_indices(media, SpectralLine::kD);
 
     SeidelSums seidel;
     double u = 0, chief_u = beam.field_slope;
     for (std::size_t i = 0; i < lens.rows.size(); ++i) {
         const LensRow& row = lens.rows[i];
         const double c = vertex_curvature(row.side), h = marginal[i].height, chief_h = chief[i].height;
-        const double before = index_before(lens, i, SpectralLine::kD), behind = row.glass.index;
+        const double before = index[i], behind = index[i + 1];
         // Refraction invariants, and changes across the surface.
         const double by_marginal = before * (u + h * c), by_chief = before * (chief_u + chief_h * c);
         const double of_slope = marginal[i].slope / behind - u / before;
         const double of_inverse = 1 / behind - 1 / before;
         const double of_square = 1 / (behind * behind) - 1 / (before * before);
-        const auto spread = [](const Glass& glass) {
-            return glass.abbe > 0 ? (glass.index - 1) / glass.abbe : 0;
-        };
-        const double of_colour =
-            spread(row.glass) / behind - (i > 0 ? spread(lens.rows[i - 1].glass) / before : 0);
+        const double of_colour = relative_spread(media[i + 1].glass) - relative_spread(media[i].glass);
 
         SeidelTerms terms;
         terms.spherical = -by_marginal * by_marginal * h * of_slope;
@@ -130,7 +139,7 @@ SeidelSums seidel_sums(const LensPrescription& lens, const LensBeam& beam) {
         seidel.sum += terms;
         u = marginal[i].slope, chief_u = chief[i].slope;
     }
-    seidel.image_slope = u;
+    seidel.image_slope = index.back() * u;
     seidel.image_height = chief.back().height + first.back_focal_length * chief_u;
     return seidel;
 }

@@ -1,5 +1,6 @@
 // Paraxial optics of a lens, and its primary aberrations by Seidel's sums (Welford, Aberrations of Optical
-// Systems, 1986, chapters 6 and 8). Objects are at infinity, air is on both sides.
+// Systems, 1986, chapters 6 and 8). Objects are at infinity, air is on both sides. Mirrors turn the index'
+// sign; tilts and decentres are not looked at, as if the lens were unfolded.
 #pragma once
 
 #include <array>
@@ -29,7 +30,7 @@ std::vector<ParaxialPlace> paraxial_ray(const LensPrescription& lens, const Para
 /// what counts from the last's too; places at infinity are infinite.
 struct FirstOrder {
     double focal_length = 0;       // positive: it gathers light
-    double back_focal_length = 0;  // from the last vertex to the image of what is at infinity
+    double back_focal_length = 0;  // from the last vertex to the image of what is at infinity; along z
     double front_focus = 0;        // from the first vertex to what is imaged to infinity
     double front_principal = 0;    // plane, from the first vertex
     double back_principal = 0;     // plane, from the last vertex
@@ -84,7 +85,7 @@ struct LensBeam {
 struct SeidelSums {
     std::vector<SeidelTerms> rows;
     SeidelTerms sum;
-    double image_slope = 0;   // of the marginal ray behind the lens
+    double image_slope = 0;   // of the marginal ray behind the lens, against the way light goes there
     double image_height = 0;  // of the chief ray, in the paraxial focus
 };
 

@@ -99,12 +99,17 @@ std::optional<Glass> glass_of_code(const std::string& name) {
 
 }  // namespace
 
-Glass find_glass(const std::string& name, const std::string& file, const std::string& place) {
+Glass find_glass(const std::string& name, const std::string& file, const std::string& place,
+                 std::span<const Glass> more) {
+    for (const Glass& glass : more)
+        if (name == glass.name) return glass;
     for (const KnownGlass& glass : kGlasses)
         if (name == glass.name) return {glass.name, glass.index, glass.abbe};
     if (const std::optional<Glass> coded = glass_of_code(name)) return *coded;
     // No list of all names where none is near.
-    const std::string near = suggestion(name, glass_names());
+    std::vector<std::string> known = glass_names();
+    for (const Glass& glass : more) known.push_back(glass.name);
+    const std::string near = suggestion(name, known);
     throw InputError(file, place,
                      "unknown glass '" + name + "'" + (near.starts_with("; did") ? near : "") +
                          "; the catalogue has Schott's, and any glass can be given by index and Abbe number");

@@ -15,9 +15,70 @@ namespace {
 }  // namespace
 
 double index_at(const Glass& glass, SpectralLine line) {
-    if (line == SpectralLine::kD || !(glass.abbe > 0)) return glass.index;
+    if (line == SpectralLine::kD) return glass.index;
+    if (glass.index_c > 0 && glass.index_f > 0)
+        return line == SpectralLine::kF ? glass.index_f : glass.index_c;
+    if (!(glass.abbe > 0)) return glass.index;
     const double half = (glass.index - 1) / (2 * glass.abbe);
     return glass.index + (line == SpectralLine::kF ? half : -half);
+}
+
+namespace {
+
+/// Turns the axis twice as far as to the normal, about what is at right angles to both.
+Mat3 bend_towards(const Vec3& normal) {
+    const Vec3 axis(0, 0, 1), across = cross(axis, normal);
+    const Vec3 about = normalize_or_zero(across);
+    if (about == Vec3(0)) return Mat3(1);
+    const double once_cos = normal.z, once_sin = length(across);
+    const double c = once_cos * once_cos - once_sin * once_sin, s = 2 * once_cos * once_sin;
+    Mat3 turn;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 e = Mat3(1)[k];
+        turn[k] = c * e + s * cross(about, e) + (1 - c) * dot(about, e) * about;
+    }
+    return turn;
+}
+
+}  // namespace
+
+void tilt_row(LensRow& row, const LensTilt& tilt) {
+    const LensPose turn = tilted(tilt.degrees), whole = shifted(tilt.decentre) * turn;
+    row.before = tilt.behind == AxisBehind::kReverses ? LensPose() : whole;
+    row.after = {};
+    if (tilt.behind == AxisBehind::kReturns || tilt.behind == AxisBehind::kReverses)
+        row.after = inverse(whole);
+    if (tilt.behind == AxisBehind::kBends) row.after = inverse(turn) * LensPose{bend_towards(turn.turn[2])};
+}
+
+std::vector<LensPose> lens_poses(const LensPrescription& lens) {
+    std::vector<LensPose> poses;
+    LensPose frame;
+    for (const LensRow& row : lens.rows) {
+        poses.push_back(frame * row.before);
+        frame = poses.back() * row.after * along_axis(row.thickness);
+    }
+    poses.push_back(frame * lens.image);
+    return poses;
+}
+
+bool is_centred(const LensPrescription& lens) {
+    return is_identity(lens.image) && std::all_of(lens.rows.begin(), lens.rows.end(), [](const LensRow& row) {
+               return is_identity(row.before) && is_identity(row.after);
+           });
+}
+
+std::vector<LensMedium> lens_media(const LensPrescription& lens) {
+    std::vector<LensMedium> media{LensMedium()};
+    for (const LensRow& row : lens.rows) {
+        LensMedium behind = media.back();
+        if (row.mirror)
+            behind.sense = -behind.sense;
+        else
+            behind.glass = row.glass;
+        media.push_back(std::move(behind));
+    }
+    return media;
 }
 
 std::size_t stop_row(const LensPrescription& lens) {
@@ -26,27 +87,55 @@ std::size_t stop_row(const LensPrescription& lens) {
     return found == lens.rows.end() ? 0 : static_cast<std::size_t>(found - lens.rows.begin());
 }
 
+namespace {
+
+/// Whether its numbers are finite.
+bool is_finite(const LensRow& row) {
+    bool finite = true;
+    for (const double number : {row.side.curvature, row.side.conic, row.side.aperture, row.thickness,
+                                row.glass.index, row.glass.abbe, row.hole})
+        finite = finite && std::isfinite(number);
+    for (const LensPose* pose : {&row.before, &row.after})
+        finite = finite && std::isfinite(dot(pose->shift, pose->shift)) &&
+                 std::isfinite(glm::determinant(pose->turn));
+    return finite;
+}
+
+/// What is wrong with a row's thickness, in such a medium; empty: nothing.
+std::string thickness_fault(const LensRow& row, const LensMedium& behind, bool is_last, bool centred) {
+    const bool in_glass = !behind.glass.is_air();
+    if (in_glass && is_last) return "is the last surface, and has glass behind it: the lens does not end";
+    if (in_glass && row.thickness == 0) return "its glass has no thickness";
+    if (in_glass && !(behind.glass.index >= 1)) return "its index is below 1";
+    if (!(row.thickness * behind.sense < 0) || is_last || (!in_glass && !centred)) return "";
+    return behind.sense > 0 ? "its thickness is negative: surfaces follow each other along the axis"
+                            : "its thickness is positive: behind a mirror light runs against the axis";
+}
+
+}  // namespace
+
 void check_prescription(const LensPrescription& lens) {
     if (lens.rows.empty()) throw InputError(lens.file, "", "has no surfaces");
-    bool has_stop = false, has_glass = false;
+    for (const LensRow& row : lens.rows)
+        if (!is_finite(row)) fail(lens, row, "a number of the surface is not finite");
+    const std::vector<LensMedium> media = lens_media(lens);
+    const bool centred = is_centred(lens);
+    bool has_stop = false, does_anything = false;
     for (std::size_t i = 0; i < lens.rows.size(); ++i) {
         const LensRow& row = lens.rows[i];
-        const bool is_last = i + 1 == lens.rows.size();
-        for (const double number : {row.side.curvature, row.side.conic, row.side.aperture, row.thickness,
-                                    row.glass.index, row.glass.abbe})
-            if (!std::isfinite(number)) fail(lens, row, "a number of the surface is not finite");
         if (row.stop && has_stop) fail(lens, row, "is a second stop");
         has_stop = has_stop || row.stop;
-        has_glass = has_glass || !row.glass.is_air();
-        if (row.thickness < 0 && !is_last)
-            fail(lens, row, "its thickness is negative: surfaces follow each other along the axis");
-        if (row.glass.is_air()) continue;
-        if (is_last) fail(lens, row, "is the last surface, and has glass behind it: the lens does not end");
-        if (!(row.thickness > 0)) fail(lens, row, "its glass has no thickness");
-        if (!(row.glass.index >= 1)) fail(lens, row, "its index is below 1");
+        does_anything = does_anything || row.mirror || !row.glass.is_air();
+        if (!(row.hole >= 0)) fail(lens, row, "the radius of its hole is negative");
+        if (row.hole > 0 && row.side.aperture > 0 && row.hole >= row.side.aperture)
+            fail(lens, row, "its hole is as large as its aperture");
+        if (row.mirror && !row.glass.is_air()) fail(lens, row, "is a mirror, and has a glass of its own");
+        const std::string fault = thickness_fault(row, media[i + 1], i + 1 == lens.rows.size(), centred);
+        if (!fault.empty()) fail(lens, row, fault);
     }
-    if (!has_glass)
-        throw InputError(lens.file, "", "has no glass: between no two surfaces is anything but air");
+    if (!does_anything)
+        throw InputError(lens.file, "",
+                         "has no glass and no mirror: between its surfaces is nothing but air");
 }
 
 double vertex_of(const LensPrescription& lens, std::size_t row) {
@@ -55,17 +144,69 @@ double vertex_of(const LensPrescription& lens, std::size_t row) {
     return z;
 }
 
+namespace {
+
+/// How thick a mirror is behind what it reflects with, in radii.
+constexpr double kMirrorBlank = 0.25;
+
+/// A body whose side of that row reflects; light comes along the row's axis, or against it.
+LensElement mirror_body(const LensPrescription& lens, std::size_t index, const LensMedium& before) {
+    const LensRow& row = lens.rows[index];
+    if (!before.glass.is_air()) fail(lens, row, "a mirror on glass is traced, but no body is made of it");
+    constexpr int kPlaces = 128;
+    double reach = 0;
+    for (int i = 0; i <= kPlaces; ++i) {
+        const double r = row.side.aperture * i / kPlaces;
+        reach = std::max(reach, before.sense * sag_at(row.side, r * r).z);
+    }
+    LensSide flat;
+    flat.aperture = row.side.aperture;
+    LensElement body{
+        index, {}, {reach + kMirrorBlank * row.side.aperture, row.side, flat, row.hole}, {}, true};
+    if (before.sense > 0) return body;
+    std::swap(body.shape.front, body.shape.back);
+    body.pose = along_axis(-body.shape.thickness);
+    return body;
+}
+
+/// The body between a row and the next one. Light may run against the axis.
+LensElement glass_body(const LensPrescription& lens, std::size_t index, const LensMedium& medium) {
+    const LensRow *front = &lens.rows[index], *back = front + 1;
+    for (const LensRow* row : {front, back})
+        if (row->mirror) fail(lens, *row, "a mirror on glass is traced, but no body is made of it");
+    const LensPose between = front->after * along_axis(front->thickness) * back->before;
+    const LensPose off = along_axis(-front->thickness) * between;
+    if (!is_identity(off, std::fabs(front->thickness)))
+        fail(lens, *front, "the sides of its glass are tilted against each other: no body is made of it");
+    LensElement body{index, {}, {std::fabs(front->thickness), front->side, back->side}, medium};
+    if (medium.sense > 0) return body;
+    std::swap(body.shape.front, body.shape.back);
+    body.pose = between;
+    return body;
+}
+
+}  // namespace
+
 std::vector<LensElement> lens_elements(const LensPrescription& lens) {
     check_prescription(lens);
+    const std::vector<LensPose> poses = lens_poses(lens);
+    const std::vector<LensMedium> media = lens_media(lens);
     std::vector<LensElement> elements;
-    for (std::size_t i = 0; i + 1 < lens.rows.size(); ++i) {
-        const LensRow &front = lens.rows[i], &back = lens.rows[i + 1];
-        if (front.glass.is_air()) continue;
-        for (const LensRow* row : {&front, &back})
-            if (!(row->side.aperture > 0)) fail(lens, *row, "has no aperture, so no rim can be made");
-        if (const char* fault = lens_fault(front.side, back.side, front.thickness))
-            fail(lens, front, std::string("from here to the next surface is no lens: ") + fault);
-        elements.push_back({i, vertex_of(lens, i), {front.thickness, front.side, back.side}, front.glass});
+    for (std::size_t i = 0; i < lens.rows.size(); ++i) {
+        const bool is_mirror = lens.rows[i].mirror, is_glass = !media[i + 1].glass.is_air();
+        if (!is_mirror && !is_glass) continue;
+        for (std::size_t k = i; k <= (is_glass ? i + 1 : i); ++k)
+            if (!(lens.rows[k].side.aperture > 0))
+                fail(lens, lens.rows[k], "has no aperture, so no rim can be made");
+        LensElement body = is_mirror ? mirror_body(lens, i, media[i]) : glass_body(lens, i, media[i + 1]);
+        const LensPrimitive& shape = body.shape;
+        if (const char* fault = lens_fault(shape.front, shape.back, shape.thickness, shape.hole))
+            fail(
+                lens, lens.rows[i],
+                (is_mirror ? "no mirror can be made of it: " : "from here to the next surface is no lens: ") +
+                    std::string(fault));
+        body.pose = poses[i] * body.pose;
+        elements.push_back(std::move(body));
     }
     return elements;
 }

@@ -1,20 +1,25 @@
-// Lenses as optical prescriptions: rows of surfaces about one axis, each with what follows it.
+// Lenses as optical prescriptions: rows of surfaces, each with what follows it, along an axis that mirrors
+// fold back and tilts bend.
 #pragma once
 
-#include <limits>
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/description/lens_side.h"
 #include "base/description/optic_description.h"
+#include "base/util/names.h"
+#include "lens/pose.h"
 
 namespace trilens {
 
 /// What lies behind a surface: air, where its name is empty.
 struct Glass {
     std::string name = {};
-    double index = 1;  // at the d line, 587.6 nm
-    double abbe = 0;   // (n_d - 1) / (n_F - n_C); 0: the same index at all lines
+    double index = 1;                 // at the d line, 587.6 nm
+    double abbe = 0;                  // (n_d - 1) / (n_F - n_C); 0: the same index at all lines
+    double index_c = 0, index_f = 0;  // where they are known by themselves; 0: by the Abbe number
 
     bool is_air() const { return name.empty(); }
 };
@@ -30,53 +35,101 @@ struct EnumNames<SpectralLine> {
                                        NamedValue<SpectralLine>{SpectralLine::kF, "F"}};
 };
 
-/// By index and Abbe number alone, as scenes have it: n_F and n_C lie equally far from n_d.
+/// Where n_F and n_C are not known, they lie equally far from n_d, as scenes have it.
 double index_at(const Glass& glass, SpectralLine line);
 
-/// A surface, and what follows it.
+/// A surface, and what follows it. Behind an odd number of mirrors light runs against the axis, and
+/// thicknesses are negative.
 struct LensRow {
     LensSide side = {.aperture = 0};  // aperture 0: not given
     double thickness = 0;  // to the next surface's vertex; of the last one: to the image, 0: not given
-    Glass glass = {};
+    Glass glass = {};      // of a mirror: none
     bool stop = false;
     std::string place = {};  // where it stands, for messages: "line 12", "/surfaces/2"
+    bool mirror = false;     // light stays in what it came through
+    double hole = 0;         // radius of what it lets by in its middle
+    LensPose before = {};    // its frame in that which the row before it leads to
+    LensPose after = {};     // the frame in which its thickness is measured, in its own
 };
 
 struct LensPrescription {
     std::string name;
     std::string file;  // for messages
     std::vector<LensRow> rows;
+    LensPose image = {};  // as a row's `before`
 };
+
+/// How the axis goes on behind a tilted row: as the row has it, as it came, along what a mirror there
+/// reflects of it, or, of a row that is not tilted itself, tilted backwards.
+enum class AxisBehind { kFollows, kReturns, kBends, kReverses };
+
+template <>
+struct EnumNames<AxisBehind> {
+    static constexpr std::array kTable{NamedValue<AxisBehind>{AxisBehind::kFollows, "follows"},
+                                       NamedValue<AxisBehind>{AxisBehind::kReturns, "returns"},
+                                       NamedValue<AxisBehind>{AxisBehind::kBends, "bends"},
+                                       NamedValue<AxisBehind>{AxisBehind::kReverses, "reverses"}};
+};
+
+struct LensTilt {
+    Vec3 decentre{0};
+    Vec3 degrees{0};  // then, as tilted() turns
+    AxisBehind behind = AxisBehind::kFollows;
+};
+
+/// Sets the row's frames.
+void tilt_row(LensRow& row, const LensTilt& tilt);
+
+/// The frames of all rows, and of the image, in that of the first row as it would be without a tilt of its
+/// own; the thickness of the last row leads to the image.
+std::vector<LensPose> lens_poses(const LensPrescription& lens);
+
+/// Whether nothing is tilted or decentred.
+bool is_centred(const LensPrescription& lens);
+
+/// What light goes through, and whether along the axis (1) or against it (-1).
+struct LensMedium {
+    Glass glass = {};
+    double sense = 1;
+};
+
+/// Before the first row, and behind each.
+std::vector<LensMedium> lens_media(const LensPrescription& lens);
 
 /// The row that is the stop: the one that says so, else the first.
 std::size_t stop_row(const LensPrescription& lens);
 
-/// Throws InputError with the file and the place of the row where there are no rows, no glass, two stops,
-/// glass behind the last surface, or a thickness that is negative or, in glass, not positive.
+/// Throws InputError with the file and the place of the row where there are no rows, neither glass nor
+/// mirror, two stops, glass behind the last surface, a thickness in glass that is not along the light, or one
+/// in air of a lens that is centred.
 void check_prescription(const LensPrescription& lens);
 
-/// A body of glass of a lens, from row `first` to the next; its front's vertex is at `z` from the first
-/// row's.
+/// A body of a lens, of glass from row `first` to the next, or behind a mirror. Its front's vertex is the
+/// origin of its frame.
 struct LensElement {
     std::size_t first = 0;
-    double z = 0;
-    LensPrimitive shape;
-    Glass glass;
+    LensPose pose = {};
+    LensPrimitive shape = {};
+    LensMedium medium = {};
+    bool is_mirror = false;
 };
 
-/// All bodies in order; those that are cemented have one side in common. Throws InputError with the place of
-/// a row that has no aperture, or of which no body can be made (see lens_fault).
+/// All bodies in order; those that are cemented have one side in common. A mirror's body is flat behind, and
+/// as thick there as a quarter of its aperture. Throws InputError with the place of a row that has no
+/// aperture, of which no body can be made (see lens_fault), of glass whose sides are tilted against each
+/// other, and of a mirror that lies on glass.
 std::vector<LensElement> lens_elements(const LensPrescription& lens);
 
-/// From the first surface's vertex to that of `row`.
+/// From the first surface's vertex to that of `row`, along the axis; tilts and decentres are not looked at.
 double vertex_of(const LensPrescription& lens, std::size_t row);
 
 // The catalogue of glasses: index and Abbe number at the d line, as their makers publish them.
 
 /// The glass of that name; older names without N- are glasses of their own. `name` may also be a code of n_d
 /// - 1 and V_d: "517642" and "517.642" are n_d 1.517 and V_d 64.2, "516800.641700" has more digits. Throws
-/// InputError(file, place) with the nearest known name where it is neither.
-Glass find_glass(const std::string& name, const std::string& file, const std::string& place);
+/// InputError(file, place) with the nearest known name where it is neither. `more` come before the catalogue.
+Glass find_glass(const std::string& name, const std::string& file, const std::string& place,
+                 std::span<const Glass> more = {});
 
 /// All names of the catalogue, sorted.
 std::vector<std::string> glass_names();

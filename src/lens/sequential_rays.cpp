@@ -17,6 +17,7 @@ std::optional<Gap> gap_at(const LensSide& side, const Ray& ray, double t) {
     const Vec3 p = ray.origin + t * ray.direction;
     const double s = p.x * p.x + p.y * p.y, c = side.curvature;
     if (!(1 - (1 + side.conic) * c * c * s > 0)) return std::nullopt;
+    if (departs_along_normal(side) && !(c * c * s < 1)) return std::nullopt;
     const Sag sag = sag_at(side, s);
     const double rise = 2 * sag.by_s * (p.x * ray.direction.x + p.y * ray.direction.y);
     return Gap{sag.z - p.z, rise - ray.direction.z};
@@ -40,39 +41,68 @@ std::optional<double> meet(const LensSide& side, const Ray& ray) {
     return std::nullopt;
 }
 
-/// Snell's law in vectors; the normal along the axis.
+/// Snell's law in vectors, whichever way the normal looks.
 std::optional<Vec3> refracted_through(const Vec3& in, const Vec3& normal, double eta) {
     const double cosine = dot(in, normal), root = 1 - eta * eta * (1 - cosine * cosine);
     if (!(root >= 0)) return std::nullopt;
-    return eta * in + (std::sqrt(root) - eta * cosine) * normal;
+    return eta * in + (std::copysign(std::sqrt(root), cosine) - eta * cosine) * normal;
+}
+
+/// A ray in a row's frame, on to it and by it; eta: the ratio of indices.
+std::optional<Ray> pass(const LensRow& row, const Ray& ray, double eta, ApertureRule apertures) {
+    const std::optional<double> t = meet(row.side, ray);
+    if (!t) return std::nullopt;
+    const Vec3 point = ray.origin + *t * ray.direction;
+    const double s = point.x * point.x + point.y * point.y, rim = row.side.aperture;
+    if (apertures == ApertureRule::kGiven && ((rim > 0 && s > rim * rim) || s < row.hole * row.hole))
+        return std::nullopt;
+    const double slope = 2 * sag_at(row.side, s).by_s;
+    const Vec3 normal = normalize(Vec3(-slope * point.x, -slope * point.y, 1));
+    if (row.mirror) return Ray{point, ray.direction - 2 * dot(ray.direction, normal) * normal};
+    const std::optional<Vec3> direction = refracted_through(ray.direction, normal, eta);
+    if (!direction) return std::nullopt;
+    return Ray{point, *direction};
 }
 
 }  // namespace
 
 std::optional<Ray> trace_lens(const LensPrescription& lens, const Ray& ray, SpectralLine line,
                               ApertureRule apertures) {
+    const std::vector<LensPose> poses = lens_poses(lens);
+    const std::vector<LensMedium> media = lens_media(lens);
+    const bool centred = is_centred(lens);
     Ray now{ray.origin, normalize_or_zero(ray.direction)};
-    double z = 0, before = 1;
-    for (const LensRow& row : lens.rows) {
-        if (!(now.direction.z > 0)) return std::nullopt;
-        const Vec3 vertex(0, 0, z);
-        const std::optional<double> t = meet(row.side, {now.origin - vertex, now.direction});
-        if (!t) return std::nullopt;
-        now.origin += *t * now.direction;
-        const double s = now.origin.x * now.origin.x + now.origin.y * now.origin.y;
-        const double rim = row.side.aperture;
-        if (apertures == ApertureRule::kGiven && rim > 0 && s > rim * rim) return std::nullopt;
-        const double slope = 2 * sag_at(row.side, s).by_s;
-        const Vec3 normal = normalize(Vec3(-slope * now.origin.x, -slope * now.origin.y, 1));
-        const double behind = index_at(row.glass, line);
-        const std::optional<Vec3> direction = refracted_through(now.direction, normal, before / behind);
-        if (!direction) return std::nullopt;
-        now.direction = *direction;
-        z += row.thickness;
-        before = behind;
+    for (std::size_t i = 0; i < lens.rows.size(); ++i) {
+        // Along a straight axis a ray that has turned back never comes to the next surface.
+        if (centred && !(now.direction.z * media[i].sense > 0)) return std::nullopt;
+        const double eta = index_at(media[i].glass, line) / index_at(media[i + 1].glass, line);
+        const std::optional<Ray> passed =
+            pass(lens.rows[i], {poses[i].local_point(now.origin), poses[i].local_direction(now.direction)},
+                 eta, apertures);
+        if (!passed) return std::nullopt;
+        now = {poses[i].point(passed->origin), poses[i].direction(passed->direction)};
     }
     return now;
 }
+
+namespace {
+
+/// Where a ray meets the plane z of a frame; none where it runs along it.
+std::optional<Vec2> place_in_plane(const Ray& ray, const LensPose& frame, double z) {
+    const Vec3 origin = frame.local_point(ray.origin), direction = frame.local_direction(ray.direction);
+    if (!(std::fabs(direction.z) > 0)) return std::nullopt;
+    return Vec2(origin + (z - origin.z) / direction.z * direction);
+}
+
+/// Longer than the way through the lens.
+double whole_length(const LensPrescription& lens) {
+    double sum = 0;
+    for (const LensRow& row : lens.rows)
+        sum += std::fabs(row.thickness) + length(row.before.shift) + length(row.after.shift);
+    return sum;
+}
+
+}  // namespace
 
 Spot spot_of(const LensPrescription& lens, const SpotRequest& request) {
     constexpr int kMostRings = 200;
@@ -87,7 +117,10 @@ Spot spot_of(const LensPrescription& lens, const SpotRequest& request) {
                          "the stop has no aperture, or no image in front: the size of the beam is not known");
     const double angle = request.field_degrees * std::numbers::pi / 180;
     const Vec3 direction(0, std::sin(angle), std::cos(angle));
-    const double plane = first.length + first.back_focal_length + request.focus_shift;
+    const LensPose image = lens_poses(lens).back();
+    const double plane = first.back_focal_length - lens.rows.back().thickness +
+                         lens_media(lens).back().sense * request.focus_shift;
+    const double far = pupil + whole_length(lens) + std::fabs(first.entrance_pupil);
 
     // The pupil is the stop's: its rim is the beam's.
     LensPrescription open = lens;
@@ -101,12 +134,9 @@ Spot spot_of(const LensPrescription& lens, const SpotRequest& request) {
             const double turn = 2 * std::numbers::pi * k / count, radius = pupil * ring / request.rings;
             const Vec3 at(radius * std::cos(turn), radius * std::sin(turn), first.entrance_pupil);
             // The pupil may lie behind the first surface: the ray starts before it.
-            const Ray start{at - (pupil + first.length + std::fabs(first.entrance_pupil)) * direction,
-                            direction};
-            const std::optional<Ray> end = trace_lens(open, start, request.line);
-            if (!end || !(end->direction.z > 0)) continue;
-            const Vec3 p = end->origin + (plane - end->origin.z) / end->direction.z * end->direction;
-            spot.points.emplace_back(p.x, p.y);
+            const std::optional<Ray> end = trace_lens(open, {at - far * direction, direction}, request.line);
+            const std::optional<Vec2> place = end ? place_in_plane(*end, image, plane) : std::nullopt;
+            if (place) spot.points.push_back(*place);
         }
     }
     if (spot.points.empty()) return spot;

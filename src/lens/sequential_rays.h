@@ -13,9 +13,9 @@ namespace trilens {
 /// Which places of a surface let rays through.
 enum class ApertureRule { kAll, kGiven };  // kGiven: within apertures, where they are given
 
-/// Refracts a ray by each surface in turn: z along the axis, the origin at the first vertex. The result
-/// starts on the last surface, unit. None where the ray misses a surface, is totally reflected, or is
-/// stopped.
+/// Refracts or reflects a ray by each surface in turn: z along the axis, the origin at the first vertex as it
+/// is without its own tilt. The result starts on the last surface, unit. None where the ray misses a surface,
+/// is totally reflected, or is stopped by an aperture, or in a hole.
 std::optional<Ray> trace_lens(const LensPrescription& lens, const Ray& ray,
                               SpectralLine line = SpectralLine::kD,
                               ApertureRule apertures = ApertureRule::kGiven);
@@ -25,10 +25,10 @@ struct SpotRequest {
     double field_degrees = 0;  // from the axis, in the yz plane
     SpectralLine line = SpectralLine::kD;
     int rings = 8;           // of rays: 6 k on the k-th, and one in the middle
-    double focus_shift = 0;  // of the plane, from the paraxial focus at the d line
+    double focus_shift = 0;  // of the plane, from the paraxial focus at the d line, along the light
 };
 
-/// Where a beam from infinity meets a plane across the axis.
+/// Where a beam from infinity meets a plane across the axis, in the image's frame.
 struct Spot {
     std::vector<Vec2> points;  // x and y in the plane, of rays that come through
     std::size_t asked = 0;     // rays that were sent

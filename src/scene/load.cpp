@@ -14,6 +14,7 @@
 #include "scene/animation/animation_keys.h"
 #include "scene/data/alpha_cut.h"
 #include "scene/data/light_objects.h"
+#include "scene/formats/lens_file.h"
 #include "scene/imports/expand_imports.h"
 #include "scene/imports/expand_lenses.h"
 #include "scene/imports/housing.h"
@@ -191,8 +192,10 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
     return scene;
 }
 
-LensPrescription load_lens(const std::string& file) {
-    return parse_lens(read_required_file(file), file);
+LensPrescription load_lens(const std::string& file, const std::string& glass_file) {
+    std::vector<Glass> glasses;
+    if (!glass_file.empty()) glasses = parse_agf(read_required_file(glass_file), glass_file);
+    return parse_lens(read_required_file(file), file, glasses);
 }
 
 namespace {
@@ -204,7 +207,8 @@ void move_files(Json& part, const std::filesystem::path& from, const std::filesy
     if (!part.is_object()) return;
     for (auto& [key, value] : part.items()) {
         const bool names =
-            (key == "file" || key == "heights" || key.ends_with("Texture")) && value.is_string();
+            (key == "file" || key == "heights" || key == "glasses" || key.ends_with("Texture")) &&
+            value.is_string();
         if (names) {
             const std::filesystem::path path = value.get<std::string>();
             if (path.is_relative())

@@ -21,8 +21,9 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
                  const TextureReader& textures, const ImportOptions& import = {});
 
 /// The lens of a file, by the ending of its name: Zemax (.zmx), CODE V (.seq), or JSON (.json) with the
-/// `surfaces` of an entry of a scene's `lenses`. Throws InputError with the file and the place in it.
-LensPrescription load_lens(const std::string& file);
+/// `surfaces` of an entry of a scene's `lenses`. Glasses of the catalogue `glass_file` (.agf) come before
+/// those that are built in. Throws InputError with the file and the place in it.
+LensPrescription load_lens(const std::string& file, const std::string& glass_file = "");
 
 /// Where a scene's text comes from.
 struct SceneSource {

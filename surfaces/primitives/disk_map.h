@@ -97,4 +97,34 @@ class DiskMap {
     double rim_, inner_;
 };
 
+/// A ring in four quarters about the axes, u outward, v around: side k as of a disk.
+class RingMap {
+  public:
+    static constexpr Id kFaces = 4;
+    RingMap(double inner, double outer) : inner_(inner), wide_(outer - inner) {}
+
+    DiskMap::Flat at(Id face, const Vec2& uv) const {
+        const double angle = kHalfTurn / 4 * (2 * uv.y - 1), speed = kHalfTurn / 2;
+        const Vec2 out = quarter_turns({std::cos(angle), std::sin(angle)}, face);
+        const Vec2 around = speed * quarter_turns(out, 1);
+        const double radius = inner_ + uv.x * wide_;
+        return {radius * out, wide_ * out,    radius * around,
+                Vec2(0),      wide_ * around, -radius * speed * speed * out};
+    }
+
+    SurfaceParameter place(const Vec2& p) const {
+        const auto [quarter, along] = quarter_of(Vec2(p.x - p.y, p.x + p.y));
+        return {quarter, {std::clamp((length(p) - inner_) / wide_, 0.0, 1.0), along}};
+    }
+
+    /// Corners of the hole are 0 to 3 from -45 degrees counter-clockwise, those of the rim 4 to 7 outside of
+    /// them.
+    static std::vector<std::array<Id, 4>> corners() {
+        return {{0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    }
+
+  private:
+    double inner_, wide_;
+};
+
 }  // namespace trilens

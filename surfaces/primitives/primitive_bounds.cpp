@@ -104,9 +104,20 @@ Slopes slopes_of(const PlanePrimitive& plane, Id) {
     return s;
 }
 
-/// A side lifts the disk by its sag f(|p|^2), by the chain rule with s = |p|^2.
-Slopes side_slopes(const LensSide& side, bool inner) {
-    const Slopes p = disk_slopes(side.aperture, inner);
+/// (hole + u (rim - hole)) (cos, sin)(v): every derivative by v is largest at the rim.
+Slopes ring_slopes(double hole, double rim) {
+    Slopes s;
+    s.u = rim - hole;
+    s.uv = s.u * kQuarter;
+    s.uvv = s.uv * kQuarter;
+    s.v = rim * kQuarter;
+    s.vv = s.v * kQuarter;
+    s.vvv = s.vv * kQuarter;
+    return s;
+}
+
+/// A side lifts the disk, or ring, by its sag f(|p|^2), by the chain rule with s = |p|^2.
+Slopes side_slopes(const LensSide& side, const Slopes& p) {
     const double far = side.aperture;
     const auto [f1, f2, f3] = largest_slopes(side);
     const double su = 2 * far * p.u, sv = 2 * far * p.v;
@@ -134,20 +145,35 @@ Slopes side_slopes(const LensSide& side, bool inner) {
     return s;
 }
 
-/// Faces as make_lens_surface numbers them: five of each side, then the quarters of the edge.
-Slopes slopes_of(const LensPrimitive& lens, Id face) {
-    if (face < 10) return side_slopes(face < 5 ? lens.front : lens.back, face % 5 == 4);
-    const double wider = lens.back.aperture - lens.front.aperture,
-                 height = lens.thickness + sag_of_rim(lens.back) - sag_of_rim(lens.front);
+/// Between rims of such radii.
+Slopes edge_slopes(double front, double back, double height) {
     Slopes s;
-    s.u = std::max(lens.front.aperture, lens.back.aperture) * kQuarter;
-    s.uv = std::fabs(wider) * kQuarter;
+    s.u = std::max(front, back) * kQuarter;
+    s.uv = std::fabs(back - front) * kQuarter;
     s.uu = s.u * kQuarter;
     s.uuv = s.uv * kQuarter;
     s.uuu = s.uu * kQuarter;
-    s.v = std::hypot(wider, height);
+    s.v = std::hypot(back - front, height);
     s.normal_u = kQuarter * height / s.v;
     return s;
+}
+
+/// Faces as make_lens_surface numbers them: those of each side, then the quarters of the edge, and of the
+/// hole.
+Slopes slopes_of(const LensPrimitive& lens, Id face) {
+    const Id of_side = lens.hole > 0 ? 4 : 5;
+    if (face < 2 * of_side) {
+        const LensSide& side = face < of_side ? lens.front : lens.back;
+        return side_slopes(side, lens.hole > 0 ? ring_slopes(lens.hole, side.aperture)
+                                               : disk_slopes(side.aperture, face % of_side == 4));
+    }
+    const auto height = [&](double front, double back) {
+        return lens.thickness + sag_at(lens.back, back * back).z - sag_at(lens.front, front * front).z;
+    };
+    const bool is_hole = face >= 2 * of_side + 4;
+    const double front = is_hole ? lens.hole : lens.front.aperture,
+                 back = is_hole ? lens.hole : lens.back.aperture;
+    return edge_slopes(front, back, height(front, back));
 }
 
 class PrimitiveBounder final : public SurfaceBounder {

@@ -181,8 +181,9 @@ TEST_CASE("bodies share the sides where they are cemented", "[lens]") {
     const auto elements = lens_elements(double_gauss());
     REQUIRE(elements.size() == 6);
     CHECK(elements[1].shape.back.curvature == elements[2].shape.front.curvature);
-    CHECK(std::fabs(elements[1].z + elements[1].shape.thickness - elements[2].z) < 1e-12);
-    CHECK(elements[5].z == 98.72);
+    CHECK(std::fabs(elements[1].pose.shift.z + elements[1].shape.thickness - elements[2].pose.shift.z) <
+          1e-12);
+    CHECK(elements[5].pose.shift.z == 98.72);
 }
 
 TEST_CASE("prescriptions of what is no lens are refused with the place of the row", "[lens][bad-input]") {

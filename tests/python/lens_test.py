@@ -61,3 +61,31 @@ def test_unknown_glass_is_refused_with_its_line(tmp_path):
         trilens.load_lens(file)
     with pytest.raises(trilens.InputError, match="/lenses/0/file: .*unknown glass 'SF22'"):
         trilens.load_scene(SOURCE / "scenes/lenses/cooke-triplet.json", {"/lenses/0/file": str(file)})
+
+
+def test_telescopes_have_their_focal_lengths_and_glasses_come_from_catalogues(command, tmp_path):
+    newtonian = trilens.load_lens(SOURCE / "scenes/lenses/newtonian.zmx")
+    assert not newtonian.is_centred and trilens.load_lens(TRIPLET).is_centred
+    assert newtonian.first_order()["focal_length"] == pytest.approx(500, abs=1e-9)
+    assert newtonian.spot(rings=3)["radius"] < 1e-10
+    origin, direction = newtonian.trace((30, 10, -900), (0, 0, 1))
+    way = [f - o for f, o in zip((0, -120, -380), origin)]
+    assert way == pytest.approx([math.dist((0, 0, 0), way) * d for d in direction], abs=1e-10)
+    _, answer = command("lens", SOURCE / "scenes/lenses/newtonian.zmx")
+    assert any("as if none were tilted" in warning for warning in answer["warnings"])
+    catalogue, file = tmp_path / "mine.agf", tmp_path / "mine.zmx"
+    catalogue.write_text("NM MINE 2 0 0 0\nCD 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653\n")
+    file.write_text("SURF 0\n DISZ INFINITY\nSURF 1\n CURV 0.02\n DISZ 4\n DIAM 9\n GLAS MINE\nSURF 2\n DIAM 9\nSURF 3\n")
+    lens = trilens.load_lens(file, glasses=catalogue)
+    assert lens.first_order()["focal_length"] == pytest.approx(50 / 0.5168, abs=1e-3)
+    _, answer = command("lens", file, "--glasses", catalogue)
+    assert answer["first_order"] == lens.first_order()
+    with pytest.raises(trilens.InputError, match="line 7: unknown glass 'MINE'"):
+        trilens.load_lens(file)
+
+
+def test_a_lens_primitive_has_a_hole():
+    ring = trilens.primitive_surface("lens", axis=(0, 0, 1), front=(4, 1), back=(-4, 0.9), hole=0.3)
+    assert ring.face_count == 16
+    with pytest.raises(trilens.InputError, match="hole is not smaller"):
+        trilens.primitive_surface("lens", hole=1)

@@ -131,7 +131,7 @@ TEST_CASE("a CODE V sequence is read in radii and in curvatures, over lines and 
     CHECK(refusal(unknown, "a.seq").starts_with("a.seq: line 5: unknown glass 'NBK6'; did you mean"));
     known.replace(known.find("RDM"), 3, "CUM");
     CHECK(parse_code_v(known, "a.seq").rows[1].side.curvature == -100);
-    for (const std::string word : {"YDE 3", "REFL", "ADE 2", "SPS XYP", "H 1e-9"}) {
+    for (const std::string word : {"REFL", "SPS XYP", "H 1e-9", "XTO", "GLB S1", "RMD TIR", "YDE three"}) {
         std::string bent = known;
         bent.insert(bent.find("ASP"), word + "\n");
         CHECK(refusal(bent, "a.seq").starts_with("a.seq: line 9: "));
@@ -141,9 +141,14 @@ TEST_CASE("a CODE V sequence is read in radii and in curvatures, over lines and 
 
 TEST_CASE("lens files of what is no lens are refused with their line", "[scene][lens][bad-input]") {
     CHECK(refusal(zemax_text("EVENASPH", "BICONICX")) ==
-          "a.zmx: line 13: a surface of type BICONICX: STANDARD and EVENASPH are read");
+          "a.zmx: line 13: a surface of type BICONICX: STANDARD, EVENASPH and COORDBRK are read");
+    CHECK(refusal(zemax_text("EVENASPH", "TOROIDAL")).find("a surface of type TOROIDAL") !=
+          std::string::npos);
     CHECK(refusal(zemax_text("N-BK7", "MIRROR")) ==
-          "a.zmx: line 10: is a mirror: lenses of refracting surfaces are read");
+          "a.zmx: line 5: its thickness is positive: behind a mirror light runs against the axis");
+    CHECK(refusal(zemax_text("DIAM 10 1", "CLAP 10 20")) == "");
+    CHECK(refusal(zemax_text("DIAM 10 1", "DIAM 10 1\r\n  CLAP 11 20")) ==
+          "a.zmx: line 5: its hole is as large as its aperture");
     CHECK(refusal(zemax_text("N-BK7", "N-BK6"))
               .starts_with("a.zmx: line 10: unknown glass 'N-BK6'; did you mean"));
     CHECK(refusal(zemax_text("0.02", "two")) == "a.zmx: line 8: CURV needs a number, not \"two\"");

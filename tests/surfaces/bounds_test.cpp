@@ -104,14 +104,20 @@ Primitive primitive_of(const PrimitiveKind& kind) {
     return {.center = {3, -2, 0.5}, .axis = {0.3, 0.8, -0.4}, .kind = kind};
 }
 
+/// An even asphere, and a sphere with departures along its normals, with a hole.
+const LensPrimitive kHoled{0.9, {0.5, 0, {0.02, -0.01}, 1.2}, {-0.4, 0, {}, 0.9, {0.02, 0.01, -0.005}}, 0.35};
 /// A hyperboloid before an even asphere.
 const LensPrimitive kLens{0.9,
                           {.curvature = 0.4, .conic = -2.2, .aperture = 1.3},
                           {.curvature = -0.3, .conic = 0.6, .coefficients = {0.01, -0.02, 0.004}}};
 
-const std::array<PrimitiveKind, 6> kBoundedKinds = {SpherePrimitive{1.7},      ParaboloidPrimitive{1.7, 0.6},
-                                                    CylinderPrimitive{1.7, 4}, ConePrimitive{1.7, 1.1},
-                                                    PlanePrimitive{{3, 0.7}},  kLens};
+const std::array<PrimitiveKind, 7> kBoundedKinds = {SpherePrimitive{1.7},
+                                                    ParaboloidPrimitive{1.7, 0.6},
+                                                    CylinderPrimitive{1.7, 4},
+                                                    ConePrimitive{1.7, 1.1},
+                                                    PlanePrimitive{{3, 0.7}},
+                                                    kLens,
+                                                    kHoled};
 
 /// Patches of several degrees and weights; the k-th of the first four has its k-th side in one point.
 std::vector<RationalPatch> rational_patches() {
@@ -209,7 +215,7 @@ TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") 
     for (const PrimitiveKind& kind : kBoundedKinds)
         surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(kind)));
     surfaces.emplace_back("patches", make_patch_surface(rational_patches(), "patches"));
-    REQUIRE(surfaces.size() == 11);
+    REQUIRE(surfaces.size() == 12);
 
     Boxes boxes(77);
     for (const auto& [name, surface] : surfaces) {

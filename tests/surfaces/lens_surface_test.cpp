@@ -19,16 +19,27 @@ LensPrimitive lens_of(double thickness, const LensSide& front, const LensSide& b
     return {thickness, front, back};
 }
 
-/// Biconvex with unlike rims, meniscus, plano-concave, hyperboloid before ellipsoid, plate.
+/// Biconvex with unlike rims, meniscus, plano-concave, hyperboloid before ellipsoid, plate; the first with a
+/// hole.
 std::vector<LensPrimitive> conicoid_lenses() {
-    return {
-        lens_of(0.9, {0.5, 0, {}, 1.2}, {-0.4, 0, {}, 0.9}),
-        lens_of(0.3, {0.6, 0, {}, 1.1}, {0.7, 0, {}, 0.8}), lens_of(0.2, {-0.5, 0, {}, 1.0}, {0, 0, {}, 1.3}),
-        lens_of(1.1, {0.9, -2.5, {}, 0.9}, {-0.6, 1.3, {}, 0.7}), lens_of(0.4, {0, 0, {}, 1}, {0, 0, {}, 1})};
+    return {lens_of(0.9, {0.5, 0, {}, 1.2}, {-0.4, 0, {}, 0.9}),
+            lens_of(0.3, {0.6, 0, {}, 1.1}, {0.7, 0, {}, 0.8}),
+            lens_of(0.2, {-0.5, 0, {}, 1.0}, {0, 0, {}, 1.3}),
+            lens_of(1.1, {0.9, -2.5, {}, 0.9}, {-0.6, 1.3, {}, 0.7}),
+            lens_of(0.4, {0, 0, {}, 1}, {0, 0, {}, 1}),
+            {0.9, {0.5, 0, {}, 1.2}, {-0.4, 0, {}, 0.9}, 0.3}};
 }
 
 LensPrimitive aspheric_lens() {
     return lens_of(0.8, {0.5, -1, {0.03, -0.02, 0.01}, 1.1}, {-0.2, 0, {0, 0.015, 0, -0.004}, 1});
+}
+
+/// Whose front departs along its sphere's normals, with a hole.
+LensPrimitive holed_asphere() {
+    LensPrimitive lens = aspheric_lens();
+    lens.front = {0.5, 0, {}, 1.1, {0.03, -0.02, 0.01}};
+    lens.hole = 0.4;
+    return lens;
 }
 
 double sag(const LensSide& side, double r) {
@@ -42,7 +53,7 @@ bool is_in_solid(const LensPrimitive& lens, const Vec3& p) {
                  high = lens.thickness + sag(lens.back, lens.back.aperture);
     const double share = (r - lens.front.aperture) / (lens.back.aperture - lens.front.aperture);
     const double edge = low + share * (high - low);  // z of the edge at r
-    if (r > std::max(lens.front.aperture, lens.back.aperture)) return false;
+    if (r > std::max(lens.front.aperture, lens.back.aperture) || r < lens.hole) return false;
     const double before = r <= lens.front.aperture ? sag(lens.front, r) : edge;
     const double behind = r <= lens.back.aperture ? lens.thickness + sag(lens.back, r) : edge;
     return p.z > before && p.z < behind;
@@ -74,19 +85,21 @@ TEST_CASE("points of lenses lie on sides and edge, with normals out of the glass
           "[surfaces][oracle]") {
     std::vector<LensPrimitive> lenses = conicoid_lenses();
     lenses.push_back(aspheric_lens());
+    lenses.push_back(holed_asphere());
     Draw draw(3);
     for (const LensPrimitive& lens : lenses) {
         const auto surface = surface_of(lens);
-        REQUIRE(surface->face_count() == 14);
-        for (Id face = 0; face < 14; ++face)
+        const Id of_side = lens.hole > 0 ? 4 : 5, faces = lens.hole > 0 ? 16 : 14;
+        REQUIRE(surface->face_count() == faces);
+        for (Id face = 0; face < faces; ++face)
             for (int k = 0; k < 20; ++k) {
                 CAPTURE(face, k);
                 const double u = draw.uniform(0.01, 0.99), v = draw.uniform(0.01, 0.99);
                 const SurfacePoint point = surface->eval(face, {u, v});
                 const Vec3& p = point.position;
                 const double r = std::hypot(p.x, p.y);
-                if (face < 5) CHECK(std::fabs(p.z - sag(lens.front, r)) < 1e-14);
-                if (face >= 5 && face < 10)
+                if (face < of_side) CHECK(std::fabs(p.z - sag(lens.front, r)) < 1e-14);
+                if (face >= of_side && face < 2 * of_side)
                     CHECK(std::fabs(p.z - lens.thickness - sag(lens.back, r)) < 1e-14);
                 CHECK(std::fabs(length(point.normal) - 1) < 1e-14);
                 CHECK(dot(point.normal, cross(point.du, point.dv)) > 0);
@@ -112,6 +125,7 @@ TEST_CASE("a lens' grid is closed: every edge of facets is that of two, with one
           "[surfaces][law]") {
     std::vector<LensPrimitive> lenses = conicoid_lenses();
     lenses.push_back(aspheric_lens());
+    lenses.push_back(holed_asphere());
     for (const LensPrimitive& lens : lenses) {
         const SurfaceGrid grid = make_grid(*surface_of(lens), 4);
         std::vector<std::pair<Id, Id>> edges;

@@ -119,11 +119,12 @@ void for_each_length(PlanePrimitive& plane, const Use& use) {
 
 /// A closed body between two sides, with a straight edge from rim to rim. Its centre is the vertex of its
 /// front side, its axis goes from there to that of its back. Its sides' shapes are scaled by
-/// with_scaled_shape().
+/// with_scaled_shape(), and its hole, which may be 0, by whoever scales it.
 struct LensPrimitive {
     static constexpr const char* kName = "lens";
     double thickness = 0.5;  // along the axis
     LensSide front = {}, back = {};
+    double hole = 0;  // radius of a round hole along the axis; 0: none
 };
 template <typename Use>
 void for_each_length(LensPrimitive& lens, const Use& use) {

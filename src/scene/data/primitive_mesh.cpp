@@ -156,13 +156,13 @@ void add_shape(const LensPrimitive& lens, const ObjectPrimitive& p, PolygonMesh&
         const LensSide& side = is_front ? lens.front : lens.back;
         const double turn = is_front ? -1 : 1, vertex = is_front ? 0 : lens.thickness;
         const Patch patch = [&](double u, double v) {
-            const double r = (1 - v) * side.aperture;
+            const double r = (1 - v) * side.aperture + v * lens.hole;
             const Sag sag = sag_at(side, r * r);
             const Vec3 out = frame.around(is_front ? 1 - u : u);
             return SurfaceCorner{on({r, vertex + sag.z}, out),
                                  turn * normalize(frame.axis - 2 * sag.by_s * r * out)};
         };
-        add_patch(patch, p.segments, (p.segments + 3) / 4, {false, true}, mesh);
+        add_patch(patch, p.segments, (p.segments + 3) / 4, {false, lens.hole == 0}, mesh);
     }
     const Ring low{lens.front.aperture, sag_of_rim(lens.front)},
         high{lens.back.aperture, lens.thickness + sag_of_rim(lens.back)};
@@ -172,6 +172,15 @@ void add_shape(const LensPrimitive& lens, const ObjectPrimitive& p, PolygonMesh&
                              normalize((high.z - low.z) * out - (high.radius - low.radius) * frame.axis)};
     };
     add_patch(edge, p.segments, 1, {}, mesh);
+    if (lens.hole == 0) return;
+    const double s = lens.hole * lens.hole;
+    const Ring front{lens.hole, sag_at(lens.front, s).z},
+        back{lens.hole, lens.thickness + sag_at(lens.back, s).z};
+    const Patch wall = [&](double u, double v) {
+        const Vec3 out = frame.around(1 - u);
+        return SurfaceCorner{(1 - v) * on(front, out) + v * on(back, out), -out};
+    };
+    add_patch(wall, p.segments, 1, {}, mesh);
 }
 
 void add_shape(const BoxPrimitive& box, const ObjectPrimitive& p, PolygonMesh& mesh) {

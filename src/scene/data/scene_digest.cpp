@@ -194,9 +194,10 @@ void add(const Primitive& primitive, Digest& digest) {
     std::visit([&](auto& one) { for_each_length(one, add_length); }, kind);
     if (const auto* lens = std::get_if<LensPrimitive>(&kind)) {
         for (const LensSide& side : {lens->front, lens->back}) {
-            const auto& [curvature, conic, coefficients, aperture] = side;
-            digest.add_all(curvature, conic, coefficients, aperture);
+            const auto& [curvature, conic, coefficients, aperture, normal_departures] = side;
+            digest.add_all(curvature, conic, coefficients, aperture, normal_departures);
         }
+        digest.add(lens->hole);
     }
 }
 

@@ -5,23 +5,35 @@
 #include <vector>
 
 #include "base/util/error.h"
+#include "lens/dispersion.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/lens_lines.h"
 
 namespace trilens {
 namespace {
 
-/// Commands of surfaces that are not refracting, or not about the axis.
-constexpr std::string_view kRefused[] = {"XDE",  "YDE", "ZDE", "ADE", "BDE", "CDE", "DAR", "BEN",
-                                         "REFL", "CYL", "YTO", "XTO", "SPS", "GRT", "HOE", "DIF",
-                                         "NSS",  "REX", "REY", "ELX", "ELY", "GRX", "ADX", "THG"};
+/// Commands of surfaces that are none of revolution, that neither refract nor reflect, or whose tilts are not
+/// about their own vertex.
+constexpr std::string_view kRefused[] = {"REFL", "CYL", "YTO", "XTO", "SPS", "GRT", "HOE",
+                                         "DIF",  "NSS", "REX", "REY", "ELX", "ELY", "GRX",
+                                         "ADX",  "THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
+
+/// Shifts along x, y, z and tilts about them.
+constexpr std::string_view kTilts[] = {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
+
+/// As it is written: angles about x and y are left-handed.
+struct WrittenTilt {
+    LensTilt tilt;
+    std::string place = {};  // of the last command that says something
+};
 
 /// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
 constexpr std::string_view kTerms = "ABCDEFG";
 
 class SequenceReader : LensLines {
   public:
-    SequenceReader(const std::string& text, const std::string& file) : LensLines(file), text_(text) {}
+    SequenceReader(const std::string& text, const std::string& file, std::span<const Glass> glasses)
+        : LensLines(file, glasses), text_(text) {}
 
     LensPrescription read() {
         std::string command;
@@ -42,6 +54,7 @@ class SequenceReader : LensLines {
         if (!command.empty()) take_all(command);
         if (!ended_)
             throw InputError(lens_.file, "", "has no surfaces from SO to SI: it is no CODE V sequence");
+        for (std::size_t i = 0; i < lens_.rows.size(); ++i) bend(lens_.rows[i], tilts_[i]);
         check_prescription(lens_);
         return std::move(lens_);
     }
@@ -59,7 +72,11 @@ class SequenceReader : LensLines {
 
     void take(std::string_view command, const std::vector<std::string_view>& words) {
         const std::string key = in_capitals(words[0]);
-        if (key == "TIT" || key == "TITLE") {
+        if (in_private_) {
+            take_private(key, words);
+        } else if (key == "PRV") {
+            in_private_ = true;
+        } else if (key == "TIT" || key == "TITLE") {
             lens_.name = rest_of_line(command, words[0]);
             std::erase(lens_.name, '\'');
         } else if (key == "CUM") {
@@ -86,28 +103,46 @@ class SequenceReader : LensLines {
         in_lens_ = true;
         LensRow& row = lens_.rows.emplace_back();
         row.place = place();
+        tilts_.emplace_back();
         if (words.size() > 1) set_curvature(number(words, 1), by_curvature_);
         if (words.size() > 2) row.thickness = number(words, 2);
         if (words.size() > 3) set_glass(words[3]);
+        if (words.size() > 4) set_mode(words[4]);
+    }
+
+    /// Whether a surface refracts or reflects.
+    void set_mode(std::string_view written) {
+        const std::string mode = in_capitals(written);
+        if (mode == "REFL") {
+            lens_.rows.back().mirror = true;
+            lens_.rows.back().glass = {};
+        } else if (mode != "REFR") {
+            fail("a surface of mode " + mode + ": REFR and REFL are read");
+        }
     }
 
     void set_curvature(double value, bool is_curvature) {
         lens_.rows.back().side.curvature = is_curvature ? value : value == 0 ? 0 : 1 / value;
     }
 
-    /// "NSK16_SCHOTT": the maker's name is left out, and the hyphen behind N or P is not written.
+    /// "NSK16_SCHOTT", "'MINE'": quotes and the maker's name are left out, and the hyphen behind N or P is
+    /// not written.
     void set_glass(std::string_view written) {
-        std::string name = in_capitals(written.substr(0, written.find('_')));
-        if (name == "REFL") fail("is a mirror: lenses of refracting surfaces are read");
+        std::string name = in_capitals(written);
+        std::erase(name, '\'');
+        const auto is_mine = [&](const Glass& glass) { return glass.name == name; };
+        if (std::none_of(glasses_.begin(), glasses_.end(), is_mine)) name = name.substr(0, name.find('_'));
+        if (name == "REFL") return set_mode(name);
         if (name == "AIR") return;
-        const std::vector<std::string> known = glass_names();
+        std::vector<std::string> known = glass_names();
+        for (const Glass& glass : glasses_) known.push_back(glass.name);
         const auto is_known = [&](const std::string& one) {
             return std::find(known.begin(), known.end(), one) != known.end();
         };
         const std::string hyphenated =
             name.substr(0, 1) + "-" + name.substr(std::min<std::size_t>(1, name.size()));
         if (!is_known(name) && is_known(hyphenated)) name = hyphenated;
-        lens_.rows.back().glass = find_glass(name, lens_.file, place());
+        lens_.rows.back().glass = find_glass(name, lens_.file, place(), glasses_);
     }
 
     void take_of_surface(const std::string& key, const std::vector<std::string_view>& words) {
@@ -120,8 +155,10 @@ class SequenceReader : LensLines {
             row.thickness = number(words, 1);
         else if (key == "GLA" && words.size() > 1)
             set_glass(words[1]);
+        else if (key == "RMD" && words.size() > 1)
+            set_mode(words[1]);
         else if (key == "CIR")
-            row.side.aperture = number(words, words.size() > 2 ? 2 : 1);
+            set_aperture(words);
         else if (key == "STO")
             row.stop = true;
         else if (key == "K")
@@ -130,18 +167,92 @@ class SequenceReader : LensLines {
             row.side.coefficients[kTerms.find(key[0]) + 1] = number(words, 1);
         else if ((key == "H" || key == "J") && number(words, 1) != 0)
             fail(key + " is beyond r^16");
+        else if (take_tilt(key, words))
+            return;
         else if (std::find(std::begin(kRefused), std::end(kRefused), key) != std::end(kRefused))
-            fail(key + ": refracting surfaces about one axis are read");
+            fail(key + ": surfaces of revolution that refract or reflect are read");
+    }
+
+    /// "CIR 10", "CIR EDG 10": the rim; "CIR HOL 2", "CIR OBS 2": what is in the middle.
+    void set_aperture(const std::vector<std::string_view>& words) {
+        LensRow& row = lens_.rows.back();
+        const std::string of = words.size() > 2 ? in_capitals(words[1]) : "";
+        const double radius = number(words, words.size() > 2 ? 2 : 1);
+        (of == "HOL" || of == "OBS" ? row.hole : row.side.aperture) = radius;
+    }
+
+    bool take_tilt(const std::string& key, const std::vector<std::string_view>& words) {
+        LensTilt& tilt = tilts_.back().tilt;
+        const auto* const found = std::find(std::begin(kTilts), std::end(kTilts), key);
+        if (found != std::end(kTilts)) {
+            const auto k = static_cast<int>(found - std::begin(kTilts));
+            (k < 3 ? tilt.decentre : tilt.degrees)[k % 3] = number(words, 1);
+        } else if (key == "DAR") {
+            tilt.behind = AxisBehind::kReturns;
+        } else if (key == "BEN") {
+            tilt.behind = AxisBehind::kBends;
+        } else if (key == "REV") {
+            tilt.behind = AxisBehind::kReverses;
+        } else {
+            return false;
+        }
+        tilts_.back().place = place();
+        return true;
+    }
+
+    /// Where an axis that bends about two axes has its own x is not known here.
+    void bend(LensRow& row, const WrittenTilt& written) const {
+        LensTilt tilt = written.tilt;
+        if (tilt.behind == AxisBehind::kBends) {
+            if (!row.mirror)
+                throw InputError(lens_.file, written.place, "BEN of a surface that is no mirror");
+            if (tilt.degrees.z != 0 || (tilt.degrees.x != 0 && tilt.degrees.y != 0))
+                throw InputError(lens_.file, written.place, "BEN is read with one of ADE and BDE alone");
+        }
+        tilt.degrees *= Vec3(-1, -1, 1);
+        tilt_row(row, tilt);
+    }
+
+    /// "PWL 656.3 587.6 486.1" and "'GLASS' n n n": indices at wavelengths in nanometres, to END.
+    void take_private(const std::string& key, const std::vector<std::string_view>& words) {
+        if (key == "END") {
+            in_private_ = false;
+            return;
+        }
+        std::vector<double> numbers;
+        for (std::size_t i = 1; i < words.size(); ++i) numbers.push_back(number(words, i));
+        if (key == "PWL") {
+            wavelengths_ = std::move(numbers);
+            return;
+        }
+        if (wavelengths_.empty()) fail("a private glass before its wavelengths (PWL)");
+        if (numbers.size() != wavelengths_.size())
+            fail("has " + std::to_string(numbers.size()) + " indices for " +
+                 std::to_string(wavelengths_.size()) + " wavelengths");
+        const auto at = [&](SpectralLine line, const char* name) {
+            constexpr double kNearEnough = 0.15;  // nanometres
+            for (std::size_t i = 0; i < numbers.size(); ++i)
+                if (std::fabs(wavelengths_[i] - 1000 * wavelength_of(line)) < kNearEnough) return numbers[i];
+            fail(std::string("the line ") + name + " is not among the wavelengths (PWL)");
+        };
+        std::string name = key;
+        std::erase(name, '\'');
+        glasses_.push_back(glass_of_lines(
+            name, {at(SpectralLine::kD, "d"), at(SpectralLine::kC, "C"), at(SpectralLine::kF, "F")},
+            lens_.file, place()));
     }
 
     const std::string& text_;
-    bool by_curvature_ = false, in_lens_ = false, ended_ = false;
+    std::vector<WrittenTilt> tilts_;   // of the rows
+    std::vector<double> wavelengths_;  // of private glasses
+    bool by_curvature_ = false, in_lens_ = false, ended_ = false, in_private_ = false;
 };
 
 }  // namespace
 
-LensPrescription parse_code_v(const std::string& bytes, const std::string& file) {
-    return SequenceReader(bytes, file).read();
+LensPrescription parse_code_v(const std::string& bytes, const std::string& file,
+                              std::span<const Glass> glasses) {
+    return SequenceReader(bytes, file, glasses).read();
 }
 
 }  // namespace trilens

@@ -1,21 +1,31 @@
 // Lens files of optics programs: sequential systems of Zemax (.zmx) and CODE V (.seq), as far as they are
-// refracting surfaces about one axis.
+// refracting and reflecting surfaces of revolution, and their glass catalogues (.agf).
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "lens/prescription.h"
 
 namespace trilens {
 
-/// Parses a Zemax file, UTF-8 or UTF-16: of each surface TYPE (STANDARD, EVENASPH), CURV, CONI, DISZ, GLAS,
-/// DIAM, PARM and STOP; object and image are left out, what is said of anything else is not looked at. Throws
-/// InputError(file, "line n") for surfaces of other types, mirrors, glass that the catalogue does not have,
-/// and numbers that are none.
-LensPrescription parse_zemax(const std::string& bytes, const std::string& file);
+/// Parses a Zemax file, UTF-8 or UTF-16: of each surface TYPE (STANDARD, EVENASPH, COORDBRK), CURV, CONI,
+/// DISZ, GLAS, DIAM, CLAP, PARM and STOP; object and image are left out, what is said of anything else is not
+/// looked at. `glasses` come before those of the catalogue. Throws InputError(file, "line n") for surfaces of
+/// other types, glass that is not known, and numbers that are none.
+LensPrescription parse_zemax(const std::string& bytes, const std::string& file,
+                             std::span<const Glass> glasses = {});
 
 /// Parses a CODE V sequence: SO, S and SI with radius (after CUM: curvature), thickness and glass, RDY, CUY,
-/// THI, GLA, CIR, STO, K and A to G. Throws as parse_zemax, and for commands that tilt, decenter or reflect.
-LensPrescription parse_code_v(const std::string& bytes, const std::string& file);
+/// THI, GLA, RMD, CIR, STO, K, A to G, XDE to CDE with DAR, BEN and REV, and private glasses (PRV). Throws as
+/// parse_zemax.
+LensPrescription parse_code_v(const std::string& bytes, const std::string& file,
+                              std::span<const Glass> glasses = {});
+
+/// Parses a glass catalogue of Zemax (.agf), UTF-8 or UTF-16: of each glass its name and its formula,
+/// Schott's (1) or Sellmeier's (2); of other formulas index and Abbe number. Throws InputError(file, "line
+/// n") for numbers that are none, glasses without an index, and files without a glass.
+std::vector<Glass> parse_agf(const std::string& bytes, const std::string& file);
 
 }  // namespace trilens

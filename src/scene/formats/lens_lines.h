@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +16,10 @@ namespace trilens {
 
 class LensLines {
   protected:
-    explicit LensLines(const std::string& file) { lens_.file = file; }
+    LensLines(const std::string& file, std::span<const Glass> glasses)
+        : glasses_(glasses.begin(), glasses.end()) {
+        lens_.file = file;
+    }
 
     std::string place() const { return "line " + std::to_string(line_); }
 
@@ -37,6 +41,7 @@ class LensLines {
     }
 
     LensPrescription lens_;
+    std::vector<Glass> glasses_;  // beside the catalogue's
     std::size_t line_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include "base/util/error.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/lens_lines.h"
+#include "scene/formats/utf16.h"
 
 namespace trilens {
 namespace {
@@ -14,40 +15,32 @@ struct ZemaxSurface {
     LensRow row;
     std::string type = "STANDARD", type_place = {};
     bool far = false;  // what comes next is at infinity
+    struct Parameter {
+        double index, value;
+        std::string written, place;
+    };
+    std::vector<Parameter> parameters;
+
+    double parameter(int index) const {
+        for (const Parameter& one : parameters)
+            if (one.index == index) return one.value;
+        return 0;
+    }
 };
 
-bool is_utf16(const std::string& bytes) {
-    return bytes.size() >= 2 &&
-           ((bytes[0] == '\xff' && bytes[1] == '\xfe') || (bytes[0] == '\xfe' && bytes[1] == '\xff'));
-}
-
-/// UTF-16 with its byte order mark as UTF-8; halves of pairs become '?'.
-std::string utf8_of_utf16(const std::string& bytes) {
-    const bool little = bytes[0] == '\xff';
-    std::string text;
-    for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
-        const auto low = static_cast<unsigned char>(bytes[little ? i : i + 1]);
-        const auto high = static_cast<unsigned char>(bytes[little ? i + 1 : i]);
-        const unsigned unit = high * 256u + low;
-        if (unit < 0x80) {
-            text += static_cast<char>(unit);
-        } else if (unit < 0x800) {
-            text += static_cast<char>(0xc0 | (unit >> 6));
-            text += static_cast<char>(0x80 | (unit & 0x3f));
-        } else if (unit >= 0xd800 && unit < 0xe000) {
-            text += '?';
-        } else {
-            text += static_cast<char>(0xe0 | (unit >> 12));
-            text += static_cast<char>(0x80 | ((unit >> 6) & 0x3f));
-            text += static_cast<char>(0x80 | (unit & 0x3f));
-        }
-    }
-    return text;
+/// Of a coordinate break, without its thickness: shifted, then turned, or the other way round.
+LensPose break_of(const ZemaxSurface& surface) {
+    const auto p = [&](int index) { return surface.parameter(index); };
+    const LensPose shift = shifted({p(1), p(2), 0});
+    const Vec3 tilt(p(3), p(4), p(5));
+    if (p(6) == 0) return shift * tilted(tilt);
+    return tilted({0, 0, tilt.z}) * tilted({0, tilt.y, 0}) * tilted({tilt.x, 0, 0}) * shift;
 }
 
 class ZemaxReader : LensLines {
   public:
-    ZemaxReader(const std::string& text, const std::string& file) : LensLines(file), text_(text) {}
+    ZemaxReader(const std::string& text, const std::string& file, std::span<const Glass> glasses)
+        : LensLines(file, glasses), text_(text) {}
 
     LensPrescription read() {
         for (std::size_t at = 0; at < text_.size();) {
@@ -59,6 +52,7 @@ class ZemaxReader : LensLines {
         if (surfaces_.empty()) throw InputError(lens_.file, "", "has no line SURF: it is no Zemax lens file");
         if (surfaces_.size() < 3) throw InputError(lens_.file, "", "has no surface between object and image");
         for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) add(surfaces_[i], i + 2 == surfaces_.size());
+        lens_.image = bend_;
         check_prescription(lens_);
         return std::move(lens_);
     }
@@ -99,51 +93,73 @@ class ZemaxReader : LensLines {
         } else if (key == "DISZ") {
             surface.far = words.size() > 1 && words[1] == "INFINITY";
             if (!surface.far) row.thickness = number(words, 1);
+        } else if (key == "CLAP") {
+            row.hole = number(words, 1);
         } else if (key == "PARM") {
-            take_parameter(words, row.side);
+            const double index = number(words, 1);
+            surface.parameters.push_back({index, number(words, 2), std::string(words[1]), place()});
         } else if (key == "GLAS") {
-            row.glass = glass(words);
+            row.mirror = words.size() > 1 && words[1] == "MIRROR";
+            row.glass = row.mirror ? Glass() : glass(words);
         }
     }
 
-    /// Of even aspheres; surfaces of other types that are read have none.
-    void take_parameter(const std::vector<std::string_view>& words, LensSide& side) const {
-        const double index = number(words, 1), value = number(words, 2);
-        if (index >= 1 && index <= static_cast<double>(kAsphereTerms) && index == std::floor(index))
-            side.coefficients[static_cast<std::size_t>(index) - 1] = value;
-        else if (value != 0)
-            fail("PARM " + std::string(words[1]) + " is not of an even asphere");
+    void set_coefficients(const ZemaxSurface& surface, LensSide& side) const {
+        for (const ZemaxSurface::Parameter& one : surface.parameters) {
+            const bool is_term = one.index >= 1 && one.index <= static_cast<double>(kAsphereTerms) &&
+                                 one.index == std::floor(one.index);
+            if (is_term)
+                side.coefficients[static_cast<std::size_t>(one.index) - 1] = one.value;
+            else if (one.value != 0)
+                throw InputError(lens_.file, one.place, "PARM " + one.written + " is not of an even asphere");
+        }
     }
 
     /// By name; a model glass has its index and Abbe number in the line.
     Glass glass(const std::vector<std::string_view>& words) const {
         if (words.size() < 2) fail("GLAS needs a name");
         const std::string name(words[1]);
-        if (name == "MIRROR") fail("is a mirror: lenses of refracting surfaces are read");
         if (name == "___BLANK") return {"model", number(words, 4), number(words, 5)};
-        return find_glass(name, lens_.file, place());
+        return find_glass(name, lens_.file, place(), glasses_);
     }
 
     void add(const ZemaxSurface& surface, bool is_last) {
-        const bool is_asphere = surface.type == "EVENASPH";
-        if (!is_asphere && surface.type != "STANDARD")
-            throw InputError(lens_.file, surface.type_place,
-                             "a surface of type " + surface.type + ": STANDARD and EVENASPH are read");
         if (surface.far && !is_last)
             throw InputError(lens_.file, surface.row.place, "what follows is at infinity");
-        lens_.rows.push_back(surface.row);
-        if (!is_asphere) lens_.rows.back().side.coefficients = {};
+        if (surface.type == "COORDBRK") {
+            add_break(surface);
+            return;
+        }
+        const bool is_asphere = surface.type == "EVENASPH";
+        if (!is_asphere && surface.type != "STANDARD")
+            throw InputError(
+                lens_.file, surface.type_place,
+                "a surface of type " + surface.type + ": STANDARD, EVENASPH and COORDBRK are read");
+        LensRow& row = lens_.rows.emplace_back(surface.row);
+        if (is_asphere) set_coefficients(surface, row.side);
+        row.before = bend_;
+        bend_ = {};
+    }
+
+    /// The row before becomes as much longer; what the break does else comes behind that. In front of the
+    /// first row its thickness moves the lens as a whole.
+    void add_break(const ZemaxSurface& surface) {
+        const double thickness = surface.row.thickness;
+        if (!lens_.rows.empty()) lens_.rows.back().thickness += thickness;
+        bend_ = along_axis(-thickness) * bend_ * break_of(surface) * along_axis(thickness);
     }
 
     const std::string& text_;
     std::vector<ZemaxSurface> surfaces_;
+    LensPose bend_;  // of breaks since the last row, behind its thickness
 };
 
 }  // namespace
 
-LensPrescription parse_zemax(const std::string& bytes, const std::string& file) {
-    const std::string text = is_utf16(bytes) ? utf8_of_utf16(bytes) : bytes;
-    return ZemaxReader(text, file).read();
+LensPrescription parse_zemax(const std::string& bytes, const std::string& file,
+                             std::span<const Glass> glasses) {
+    const std::string text = text_of(bytes);
+    return ZemaxReader(text, file, glasses).read();
 }
 
 }  // namespace trilens

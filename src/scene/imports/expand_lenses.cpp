@@ -31,7 +31,10 @@ Json side_json(const LensSide& side) {
     Json json = Json::object();
     if (side.curvature != 0) json["radius"] = 1 / side.curvature;
     if (side.conic != 0) json["conic"] = side.conic;
-    if (!is_conicoid(side)) json["coefficients"] = side.coefficients;
+    const auto is_zero = [](double a) { return a == 0; };
+    if (!std::all_of(side.coefficients.begin(), side.coefficients.end(), is_zero))
+        json["coefficients"] = side.coefficients;
+    if (departs_along_normal(side)) json["normalDepartures"] = side.normal_departures;
     json["aperture"] = side.aperture;
     return json;
 }
@@ -52,38 +55,43 @@ class Expansion {
         const std::vector<LensElement> elements = lens_elements(lens_.prescription);
         for (std::size_t i = 0; i < elements.size(); ++i) {
             const LensElement& element = elements[i];
-            const std::string glass = material_of(element.glass);
+            const std::string material =
+                element.is_mirror ? mirror_material() : material_of(element.medium.glass);
             Json mesh{{"name", lens_.name + "/" + std::to_string(i + 1)},
                       {"role", "optic"},
-                      {"material", glass},
+                      {"material", material},
                       {"resolution", lens_.resolution}};
             mesh["primitive"] = {{"type", "lens"},
-                                 {"center", {0, 0, element.z}},
-                                 {"axis", {0, 0, 1}},
+                                 {"center", json_of(element.pose.shift)},
+                                 {"axis", json_of(element.pose.turn[2])},
+                                 {"tangent", json_of(element.pose.turn[0])},
                                  {"thickness", element.shape.thickness},
                                  {"front", side_json(element.shape.front)},
                                  {"back", side_json(element.shape.back)}};
+            if (element.shape.hole > 0) mesh["primitive"]["hole"] = element.shape.hole;
             add(std::move(mesh));
         }
     }
 
-    /// False where the stop lies on glass.
+    /// False where the stop lies on glass; a mirror's rim is one by itself.
     bool add_stop() {
         const LensPrescription& lens = lens_.prescription;
         const auto is_stop = [](const LensRow& row) { return row.stop; };
         const auto stop = std::find_if(lens.rows.begin(), lens.rows.end(), is_stop);
-        if (stop == lens.rows.end() || !(stop->side.aperture > 0)) return true;
-        const bool in_air = stop->glass.is_air() && (stop == lens.rows.begin() || (stop - 1)->glass.is_air());
-        if (!in_air) return false;
+        if (stop == lens.rows.end() || !(stop->side.aperture > 0) || stop->mirror) return true;
+        const auto index = static_cast<std::size_t>(stop - lens.rows.begin());
+        const std::vector<LensMedium> media = lens_media(lens);
+        if (!media[index].glass.is_air() || !media[index + 1].glass.is_air()) return false;
         double widest = 0;
         for (const LensRow& row : lens.rows) widest = std::max(widest, row.side.aperture);
         const std::string name = lens_.name + "/stop";
         scene_["materials"].push_back({{"name", name}, {"baseColorFactor", {0, 0, 0}}, {"unlit", true}});
         Json mesh{{"name", name}, {"role", "object"}, {"material", name}};
-        const double z = vertex_of(lens, static_cast<std::size_t>(stop - lens.rows.begin()));
+        const LensPose pose = lens_poses(lens)[index];
         mesh["primitive"] = {{"type", "disk"},
-                             {"center", {0, 0, z}},
-                             {"normal", {0, 0, 1}},
+                             {"center", json_of(pose.shift)},
+                             {"normal", json_of(pose.turn[2])},
+                             {"tangent", json_of(pose.turn[0])},
                              {"radius", kRingReach * widest},
                              {"hole", stop->side.aperture},
                              {"segments", kRingSegments}};
@@ -92,6 +100,16 @@ class Expansion {
     }
 
   private:
+    static Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+    std::string mirror_material() {
+        std::string name = lens_.name + "/mirror";
+        if (!has_mirror_)
+            scene_["materials"].push_back({{"name", name}, {"metallicFactor", 1}, {"roughnessFactor", 0}});
+        has_mirror_ = true;
+        return name;
+    }
+
     /// Its material's name, which is added where it is new. Glasses by numbers may share a name.
     std::string material_of(const Glass& glass) {
         std::size_t namesakes = 0;
@@ -116,6 +134,7 @@ class Expansion {
     const ReadLens& lens_;
     Json& scene_;
     std::vector<std::pair<Glass, std::string>> materials_;  // that were added
+    bool has_mirror_ = false;
 };
 
 }  // namespace

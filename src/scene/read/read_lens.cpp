@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "json/schema.h"
+#include "lens/dispersion.h"
+#include "lens/q_asphere.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/line_scanner.h"
 #include "scene/read/reading.h"
@@ -15,7 +17,12 @@ namespace {
 struct WrittenSide {
     double radius = 0;  // 0: flat
     double conic = 0, aperture = 1;
+    double normalization_radius = 0;  // 0: the aperture
 };
+
+Json terms(std::size_t most) {
+    return {{"type", "array"}, {"minItems", 1}, {"maxItems", most}, {"items", ref("number")}};
+}
 
 const std::vector<Field<WrittenSide>>& side_fields() {
     static const std::vector<Field<WrittenSide>> fields{
@@ -24,22 +31,50 @@ const std::vector<Field<WrittenSide>>& side_fields() {
                 "it, or 0: flat.")
             .without_default(),
         setting("conic", &WrittenSide::conic, ref("number"), "-1: a paraboloid, 0: a sphere."),
+        part<WrittenSide>("coefficients", terms(kAsphereTerms),
+                          "Of r^2, r^4, ... r^16, added to the conicoid."),
         part<WrittenSide>(
-            "coefficients",
-            {{"type", "array"}, {"minItems", 1}, {"maxItems", kAsphereTerms}, {"items", ref("number")}},
-            "Of r^2, r^4, ... r^16, added to the conicoid."),
+            "normalDepartures", terms(kAsphereTerms),
+            "Of r^2, r^4, ... r^16, over sqrt(1 - r^2 / radius^2): along the sphere's normals."),
+        part<WrittenSide>("qcon", terms(kQTerms),
+                          "Forbes' strong asphere, a0, a1, ...: added to the coefficients."),
+        part<WrittenSide>("qbfs", terms(kQTerms),
+                          "Forbes' mild asphere, a0, a1, ...: added to the departures; needs a sphere."),
+        setting("normalizationRadius", &WrittenSide::normalization_radius, ref("positive"),
+                "Of qcon and qbfs, where their u is 1; without it, the aperture.")
+            .without_default(),
         setting("aperture", &WrittenSide::aperture, ref("positive"), "Radius of its rim."),
     };
     return fields;
 }
 
-/// `json`: what it was read from.
-LensSide side_of(const WrittenSide& written, const Json& json) {
+void add_terms(const Json& json, const char* key, std::array<double, kAsphereTerms>& to) {
+    if (!json.contains(key)) return;
+    for (std::size_t i = 0; i < json.at(key).size(); ++i) to[i] += json.at(key)[i].get<double>();
+}
+
+/// A Q-type asphere's terms; `of` makes polynomials of them.
+template <typename Of>
+void add_q_terms(const Node& node, const char* key, const WrittenSide& written, const Of& of,
+                 std::array<double, kAsphereTerms>& to) {
+    if (!node.has(key)) return;
+    const double radius = written.normalization_radius > 0 ? written.normalization_radius : written.aperture;
+    if (!(radius > 0)) node[key].fail("needs an aperture or a normalizationRadius");
+    const auto a = node[key].json.get<std::vector<double>>();
+    const std::array<double, kAsphereTerms> added = of(a, radius);
+    for (std::size_t i = 0; i < kAsphereTerms; ++i) to[i] += added[i];
+}
+
+/// `node`: what it was read from.
+LensSide side_of(const WrittenSide& written, const Node& node) {
     LensSide side{written.radius == 0 ? 0 : 1 / written.radius, written.conic, {}, written.aperture};
-    if (!json.contains("coefficients")) return side;
-    const Json& coefficients = json.at("coefficients");
-    for (std::size_t i = 0; i < coefficients.size(); ++i)
-        side.coefficients[i] = coefficients[i].get<double>();
+    add_terms(node.json, "coefficients", side.coefficients);
+    add_terms(node.json, "normalDepartures", side.normal_departures);
+    add_q_terms(node, "qcon", written, qcon_coefficients, side.coefficients);
+    add_q_terms(node, "qbfs", written, qbfs_departures, side.normal_departures);
+    if (written.conic != 0)
+        for (const char* key : {"qbfs", "normalDepartures"})
+            if (node.has(key)) node[key].fail("departs from a sphere: the side's conic must be 0");
     return side;
 }
 
@@ -48,14 +83,15 @@ LensSide side_of(const WrittenSide& written, const Json& json) {
 void from_json_value(const Json& json, LensSide& side) {
     WrittenSide written;
     const std::string nowhere;
-    read_fields(Node{json, "", nowhere}, side_fields(), written);
-    side = side_of(written, json);
+    const Node node{json, "", nowhere};
+    read_fields(node, side_fields(), written);
+    side = side_of(written, node);
 }
 Json lens_side_schema() {
     return object_schema(
         {.title = "a lens' side",
          .description = "c r^2 / (1 + sqrt(1 - (1 + conic) c^2 r^2)) along the axis at r from it, c = 1 / "
-                        "radius; and the terms of an even asphere.",
+                        "radius; and the terms of an even or a Q-type asphere.",
          .required = {"aperture"}},
         side_fields());
 }
@@ -64,9 +100,23 @@ namespace {
 
 struct WrittenRow {
     WrittenSide side = {.aperture = 0};
-    double thickness = 0, ior = 1, abbe = 0;
-    bool stop = false;
+    double thickness = 0, ior = 1, abbe = 0, hole = 0;
+    bool stop = false, mirror = false;
+    LensTilt tilt;
 };
+
+const std::vector<Field<LensTilt>>& tilt_fields() {
+    static const std::vector<Field<LensTilt>> fields{
+        setting("decentre", &LensTilt::decentre, ref("vec3"), "Of the surface, along the axes so far."),
+        setting("tilt", &LensTilt::degrees, ref("vec3"),
+                "Degrees about x, then about the new y, then about the new z, right-handed; after decentre."),
+        choice(
+            "axisBehind", &LensTilt::behind,
+            "How the axis goes on: tilted as the surface, as before it, or along what the mirror reflects; "
+            "reverses: only what follows is tilted, backwards."),
+    };
+    return fields;
+}
 
 const std::vector<Field<WrittenRow>>& row_fields() {
     static const std::vector<Field<WrittenRow>> fields = [] {
@@ -75,8 +125,9 @@ const std::vector<Field<WrittenRow>>& row_fields() {
             list.push_back(within(&WrittenRow::side, field));
             if (field.key == "aperture") list.back().schema.erase("default");
         }
-        list.push_back(setting("thickness", &WrittenRow::thickness, ref("notNegative"),
-                               "To the next surface, along the axis."));
+        list.push_back(setting("thickness", &WrittenRow::thickness, ref("number"),
+                               "To the next surface, along the axis; negative behind an odd number of "
+                               "mirrors."));
         list.push_back(
             part<WrittenRow>("glass", some_text(),
                              "What follows: a name of the catalogue (N-BK7), or a code of index and "
@@ -86,8 +137,17 @@ const std::vector<Field<WrittenRow>>& row_fields() {
         list.push_back(setting("abbe", &WrittenRow::abbe, ref("positive"),
                                "Its Abbe number; without it, all colours have that index.")
                            .without_default());
+        list.push_back(part<WrittenRow>("sellmeier", several(6, ref("number")),
+                                        "What follows, by K1, L1, K2, L2, K3, L3 of Sellmeier's formula, "
+                                        "wavelengths in micrometres."));
         list.push_back(setting("stop", &WrittenRow::stop, yes_or_no(),
                                "The aperture stop: in air, a black ring around its aperture."));
+        list.push_back(setting("mirror", &WrittenRow::mirror, yes_or_no(),
+                               "Reflects; light stays in what it came through."));
+        list.push_back(
+            setting("hole", &WrittenRow::hole, ref("notNegative"),
+                    "Radius of a hole in a mirror's middle; other surfaces stop the light there."));
+        for (const Field<LensTilt>& field : tilt_fields()) list.push_back(within(&WrittenRow::tilt, field));
         return list;
     }();
     return fields;
@@ -105,7 +165,9 @@ const std::vector<Field<WrittenLens>>& written_lens_fields() {
         setting("name", &WrittenLens::name, ref("name")).without_default(),
         part<WrittenLens>("file", some_text(),
                           "A Zemax file (.zmx), a CODE V sequence (.seq), or JSON with 'surfaces'."),
-        part<WrittenLens>("surfaces", list_of(ref("lensSurface"), 2),
+        part<WrittenLens>("glasses", some_text(),
+                          "A catalogue of glasses (.agf), whose names come before those that are built in."),
+        part<WrittenLens>("surfaces", list_of(ref("lensSurface"), 1),
                           "From the front, which is at the origin, along +z; air before the first."),
         setting("resolution", &WrittenLens::resolution, whole_in(1, kMaxResolution), "As of optics."),
         setting("dispersion", &WrittenLens::dispersion, yes_or_no(),
@@ -124,8 +186,14 @@ Json lens_surface_schema() {
     schema.update(parse_json(
         R"json({
   "dependencies": { "abbe": ["ior"] },
-  "if": { "required": ["glass"] },
-  "then": { "title": "a surface with a glass", "properties": { "ior": false } }
+  "allOf": [
+    { "if": { "required": ["glass"] },
+      "then": { "title": "a surface with a glass", "properties": { "ior": false, "sellmeier": false } } },
+    { "if": { "required": ["sellmeier"] },
+      "then": { "title": "a surface with a formula", "properties": { "ior": false } } },
+    { "if": { "required": ["mirror"], "properties": { "mirror": { "const": true } } },
+      "then": { "title": "a mirror", "properties": { "glass": false, "ior": false, "sellmeier": false } } }
+  ]
 })json",
         "the rules of surfaces"));
     return schema;
@@ -145,7 +213,17 @@ Json lens_schema() {
 
 namespace {
 
-LensPrescription read_surfaces(const Node& surfaces) {
+Glass read_glass(const Node& row, const WrittenRow& written, std::span<const Glass> glasses) {
+    if (row.has("glass"))
+        return find_glass(row["glass"].json.get<std::string>(), row.file, row["glass"].place, glasses);
+    if (row.has("sellmeier"))
+        return sellmeier_glass("sellmeier", row["sellmeier"].json.get<SellmeierTerms>(), row.file,
+                               row["sellmeier"].place);
+    if (row.has("ior")) return {describe(written.ior), written.ior, written.abbe};
+    return {};
+}
+
+LensPrescription read_surfaces(const Node& surfaces, std::span<const Glass> glasses) {
     LensPrescription lens;
     lens.file = surfaces.file;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -153,20 +231,23 @@ LensPrescription read_surfaces(const Node& surfaces) {
         WrittenRow written;
         read_fields(node, row_fields(), written);
         LensRow& row = lens.rows.emplace_back();
-        row.side = side_of(written.side, node.json);
+        row.side = side_of(written.side, node);
         row.thickness = written.thickness;
         row.stop = written.stop;
         row.place = node.place;
-        if (node.has("glass"))
-            row.glass = find_glass(node["glass"].json.get<std::string>(), node.file, node["glass"].place);
-        else if (node.has("ior"))
-            row.glass = {describe(written.ior), written.ior, written.abbe};
+        row.mirror = written.mirror;
+        row.hole = written.hole;
+        if (written.tilt.behind == AxisBehind::kBends && !written.mirror)
+            node["axisBehind"].fail("bends behind mirrors alone");
+        tilt_row(row, written.tilt);
+        row.glass = read_glass(node, written, glasses);
     }
     check_prescription(lens);
     return lens;
 }
 
-LensPrescription parse_lens_json(const std::string& bytes, const std::string& file) {
+LensPrescription parse_lens_json(const std::string& bytes, const std::string& file,
+                                 std::span<const Glass> glasses) {
     const Json json = parse_json(bytes, file);
     const Json& whole = scene_schema_json();
     Json alone = whole.at("definitions").at("lens");
@@ -174,22 +255,24 @@ LensPrescription parse_lens_json(const std::string& bytes, const std::string& fi
     if (const auto found = find_problem(json, alone)) fail_at(file, found->place, found->message);
     const Node root{json, "", file};
     if (!root.has("surfaces")) root["file"].fail("a lens file has its own 'surfaces'");
-    LensPrescription lens = read_surfaces(root["surfaces"]);
+    if (root.has("glasses")) root["glasses"].fail("are named beside a lens file, not in it");
+    LensPrescription lens = read_surfaces(root["surfaces"], glasses);
     lens.name = string_or(root, "name", "");
     return lens;
 }
 
 }  // namespace
 
-LensPrescription parse_lens(const std::string& bytes, const std::string& file) {
+LensPrescription parse_lens(const std::string& bytes, const std::string& file,
+                            std::span<const Glass> glasses) {
     const std::string ending = in_capitals(std::filesystem::path(file).extension().string());
     LensPrescription lens;
     if (ending == ".ZMX")
-        lens = parse_zemax(bytes, file);
+        lens = parse_zemax(bytes, file, glasses);
     else if (ending == ".SEQ")
-        lens = parse_code_v(bytes, file);
+        lens = parse_code_v(bytes, file, glasses);
     else if (ending == ".JSON")
-        lens = parse_lens_json(bytes, file);
+        lens = parse_lens_json(bytes, file, glasses);
     else
         throw InputError(file, "", "is no lens file: its name ends neither in .zmx nor .seq nor .json");
     if (lens.name.empty()) lens.name = std::filesystem::path(file).stem().string();
@@ -201,13 +284,22 @@ ReadLens read_lens(const Node& node, std::size_t index, Reading& reading) {
     written.name = "lens" + std::to_string(index);
     read_fields(node, written_lens_fields(), written);
     ReadLens lens{{}, written.name, written.resolution, written.dispersion};
+    std::vector<Glass> glasses;
+    if (node.has("glasses")) {
+        const std::string path = reading.resolve(node["glasses"].json.get<std::string>());
+        try {
+            glasses = parse_agf(reading.read_file(path), path);
+        } catch (const InputError& error) {
+            node["glasses"].fail(error.what());
+        }
+    }
     if (node.has("surfaces")) {
-        lens.prescription = read_surfaces(node["surfaces"]);
+        lens.prescription = read_surfaces(node["surfaces"], glasses);
         return lens;
     }
     const std::string path = reading.resolve(node["file"].json.get<std::string>());
     try {
-        lens.prescription = parse_lens(reading.read_file(path), path);
+        lens.prescription = parse_lens(reading.read_file(path), path, glasses);
     } catch (const InputError& error) {
         node["file"].fail(error.what());
     }

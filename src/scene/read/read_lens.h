@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "json/json.h"
@@ -22,9 +23,10 @@ struct ReadLens {
 /// One entry of a scene's `lenses`, of a checked document. Throws InputError with its place.
 ReadLens read_lens(const Node& lens, std::size_t index, Reading& reading);
 
-/// The bytes of a lens file, by the ending of its name: .zmx, .seq, or .json, as an entry of `lenses`. Throws
-/// InputError(file, place in it).
-LensPrescription parse_lens(const std::string& bytes, const std::string& file);
+/// The bytes of a lens file, by the ending of its name: .zmx, .seq, or .json, as an entry of `lenses`.
+/// `glasses` come before those of the catalogue. Throws InputError(file, place in it).
+LensPrescription parse_lens(const std::string& bytes, const std::string& file,
+                            std::span<const Glass> glasses = {});
 
 Json lens_schema();          // of a scene's `lenses`
 Json lens_surface_schema();  // of a lens

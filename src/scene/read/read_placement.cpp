@@ -122,7 +122,7 @@ const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
             of_kinds<P>("front", TRILENS_MEMBER(front), ref("lensSide"), "", Need::kYes),
             of_kinds<P>("back", TRILENS_MEMBER(back), ref("lensSide"), "", Need::kYes),
             of_kinds<P>("hole", TRILENS_MEMBER(hole), ref("notNegative"),
-                        "Radius of a hole in its middle, below its own; 0: none."),
+                        "Radius of a hole in its middle, along the axis, below its own; 0: none."),
             std::move(size),
             std::move(segments),
         };
@@ -162,7 +162,7 @@ ObjectPrimitive read_shape(const Node& node) {
     ObjectPrimitive shape;
     read_fields(node, primitive_fields(), shape);
     if (const auto* lens = std::get_if<LensPrimitive>(&shape.kind))
-        if (const char* fault = lens_fault(lens->front, lens->back, lens->thickness))
+        if (const char* fault = lens_fault(lens->front, lens->back, lens->thickness, lens->hole))
             node.fail(std::string("is no lens: ") + fault);
     if (const auto* disk = std::get_if<DiskPrimitive>(&shape.kind); disk && !(disk->hole < disk->radius))
         node["hole"].fail("is not smaller than the disk");
@@ -207,8 +207,10 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
         side *= *factor;
         extent = std::max(extent, side);
     };
-    if (auto* lens = std::get_if<LensPrimitive>(&*kind))
+    if (auto* lens = std::get_if<LensPrimitive>(&*kind)) {
         for (LensSide* side : {&lens->front, &lens->back}) *side = with_scaled_shape(*side, *factor);
+        lens->hole *= *factor;
+    }
     std::visit([&](auto& one) { for_each_length(one, scale); }, *kind);
     primitive.kind = *kind;
     if (!(extent <= kLargestCoordinate))

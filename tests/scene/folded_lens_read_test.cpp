@@ -1,0 +1,225 @@
+// Lens files with mirrors, tilts and decentres, Q-type aspheres and dispersion formulas: what each program's
+// words mean, and that all of them say the same.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "lens/sequential_rays.h"
+#include "scene/formats/lens_file.h"
+#include "scene/read/read_lens.h"
+#include "scene/scene_text.h"
+#include "support/draw.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+std::string telescope_text(const std::string& name) {
+    return read_required_file(source_dir() + "/scenes/lenses/" + name);
+}
+
+std::string lens_refusal(const std::string& text, const std::string& file) {
+    try {
+        parse_lens(text, file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// Along which lines rays from all over leave two lenses, and how much that differs at most.
+double ray_difference(const LensPrescription& one, const LensPrescription& other) {
+    Draw draw(3);
+    double worst = 0;
+    for (int i = 0; i < 100; ++i) {
+        const Vec3 at(draw.uniform(-5, 5), draw.uniform(-5, 5), -100);
+        const Ray ray{at, normalize(Vec3(draw.uniform(-0.02, 0.02), draw.uniform(-0.02, 0.02), 1))};
+        const auto a = trace_lens(one, ray, SpectralLine::kD, ApertureRule::kAll);
+        const auto b = trace_lens(other, ray, SpectralLine::kD, ApertureRule::kAll);
+        REQUIRE(a);
+        REQUIRE(b);
+        worst = std::max(
+            {worst, length(cross(a->origin - b->origin, a->direction)), length(a->direction - b->direction)});
+    }
+    const LensPose a = lens_poses(one).back(), b = lens_poses(other).back();
+    return std::max(
+        {worst, length(a.shift - b.shift), length(a.turn[0] - b.turn[0]), length(a.turn[2] - b.turn[2])});
+}
+
+std::string zemax_break(const char* parameters, double thickness, int number) {
+    return "SURF " + std::to_string(number) + "\n TYPE COORDBRK\n" + parameters + " DISZ " +
+           std::to_string(thickness) + "\n";
+}
+
+const char* const kZemaxStart = "SURF 0\n DISZ INFINITY\n";
+
+}  // namespace
+
+TEST_CASE("a Newtonian's coordinate breaks, a bent axis of CODE V and rows of JSON are the same telescope",
+          "[scene][lens]") {
+    const LensPrescription zemax = parse_lens(telescope_text("newtonian.zmx"), "newtonian.zmx");
+    REQUIRE(zemax.rows.size() == 2);
+    CHECK(zemax.rows[0].mirror);
+    CHECK(zemax.rows[1].thickness == 120);
+    const LensPrescription code_v = parse_lens(
+        "RDM\nSO 0 1E13\nS -1000 -380 REFL; STO; K -1; CIR 50\nS 0 120 REFL; ADE -45; BEN; CIR 19\nSI 0 0\n",
+        "a.seq");
+    const LensPrescription json = parse_lens(R"({"surfaces": [
+        {"radius": -1000, "conic": -1, "aperture": 50, "thickness": -380, "mirror": true, "stop": true},
+        {"aperture": 19, "thickness": 120, "mirror": true, "tilt": [45, 0, 0], "axisBehind": "bends"}]})",
+                                             "a.json");
+    CHECK(ray_difference(zemax, code_v) < 1e-10);
+    CHECK(ray_difference(zemax, json) < 1e-10);
+    CHECK(spot_of(zemax, {}).radius < 1e-10);
+    // The image: to the side of the tube, upright to it.
+    const LensPose image = lens_poses(zemax).back();
+    CHECK(length(image.shift - Vec3(0, -120, -380)) < 1e-12);
+    CHECK(length(image.turn[2] - Vec3(0, -1, 0)) < 1e-15);
+}
+
+TEST_CASE("the shipped Cassegrain has the focal length of its title, and a hole", "[scene][lens]") {
+    const LensPrescription lens = parse_lens(telescope_text("cassegrain.seq"), "cassegrain.seq");
+    REQUIRE(lens.rows.size() == 2);
+    CHECK(lens.rows[0].hole == 13);
+    CHECK(lens.rows[0].side.aperture == 50);
+    CHECK(std::fabs(first_order(lens).focal_length - 900) < 1e-9);
+    CHECK(std::fabs(first_order(lens).f_number - 9) < 1e-9);
+    CHECK(spot_of(lens, {}).radius < 1e-9);
+}
+
+TEST_CASE("a plate that is decentred and returned is the one between two breaks, whatever their order",
+          "[scene][lens]") {
+    const std::string plate = " GLAS N-BK7\n DISZ 8\n DIAM 9\n", end = "SURF 6\n DISZ 0\n";
+    const std::string zemax =
+        std::string(kZemaxStart) +
+        zemax_break(" PARM 1 1.5\n PARM 2 -0.5\n PARM 3 20\n PARM 4 -7\n PARM 5 30\n", 0, 1) + "SURF 2\n" +
+        plate + "SURF 3\n DIAM 9\n DISZ 0\n" + zemax_break("", -8, 4) +
+        zemax_break(" PARM 1 -1.5\n PARM 2 0.5\n PARM 3 -20\n PARM 4 7\n PARM 5 -30\n PARM 6 1\n", 50, 5) +
+        end;
+    const LensPrescription by_breaks = parse_lens(zemax, "a.zmx");
+    REQUIRE(by_breaks.rows.size() == 2);
+    CHECK(by_breaks.rows[1].thickness == 42);
+    const LensPrescription by_reverse = parse_lens(
+        "RDM\nSO 0 1E13\nS 0 8 NBK7\n XDE 1.5; YDE -0.5; ADE -20; BDE 7; CDE 30; CIR 9\nS 0 0; CIR 9\n"
+        "S 0 -8\nS 0 50; XDE 1.5; YDE -0.5; ADE -20; BDE 7; CDE 30; REV\nSI 0 0\n",
+        "a.seq");
+    const LensPrescription json = parse_lens(R"({"surfaces": [
+        {"glass": "N-BK7", "thickness": 8, "aperture": 9, "decentre": [1.5, -0.5, 0], "tilt": [20, -7, 30]},
+        {"aperture": 9, "thickness": -8},
+        {"thickness": 50, "decentre": [1.5, -0.5, 0], "tilt": [20, -7, 30], "axisBehind": "reverses"}]})",
+                                             "a.json");
+    CHECK(ray_difference(by_breaks, by_reverse) < 1e-10);
+    CHECK(ray_difference(by_breaks, json) < 1e-10);
+    // The breaks undo each other.
+    const LensPose image = lens_poses(by_breaks).back();
+    CHECK(length(image.shift - Vec3(0, 0, 50)) < 1e-13);
+    CHECK(length(image.turn[0] - Vec3(1, 0, 0)) < 1e-15);
+    CHECK(lens_elements(by_breaks).size() == 1);
+}
+
+TEST_CASE("a decentred mirror whose axis returns leaves the next surface where it was", "[scene][lens]") {
+    const LensPrescription lens =
+        parse_lens("RDM\nSO 0 1E13\nS 0 -30 REFL; YDE 2; ADE 10; DAR\nS -100 0 REFL\nSI 0 0\n", "a.seq");
+    const auto poses = lens_poses(lens);
+    CHECK(length(poses[0].shift - Vec3(0, 2, 0)) < 1e-15);
+    // A left-handed turn about x: the normal leans to +y.
+    CHECK(poses[0].turn[2].y > 0.17);
+    CHECK(length(poses[1].shift - Vec3(0, 0, -30)) < 1e-14);
+    CHECK(length(poses[1].turn[2] - Vec3(0, 0, 1)) < 1e-15);
+}
+
+TEST_CASE("glasses are read from catalogues and private tables, before those that are built in",
+          "[scene][lens]") {
+    const std::string agf =
+        "CC a catalogue\nNM N-BK7 2 517642.251 1.5168 64.17 0 1\nED 7.1 8.3 2.51 0 0\n"
+        "CD 1.03961212E+000 6.00069867E-003 2.31792344E-001 2.00179144E-002 1.01046945E+000 "
+        "1.03560653E+002 0 0\nLD 0.3 2.5\nNM PLASTIC 13 492574 1.4918 57.4 0\nCD 1 2 3 4\n"
+        "NM OLD 1 0 0 0 0\nCD 2.2718929 -1.0108077e-2 1.0592509e-2 2.0816965e-4 -7.6472538e-6 "
+        "4.9240991e-7\n";
+    const std::vector<Glass> glasses = parse_agf(agf, "a.agf");
+    REQUIRE(glasses.size() == 3);
+    CHECK(std::fabs(glasses[0].index_f - 1.52238) < 5e-6);
+    CHECK(glasses[1].abbe == 57.4);
+    CHECK(glasses[1].index_f == 0);
+    CHECK(glasses[2].name == "OLD");
+    const std::string text =
+        "SURF 0\n DISZ INFINITY\nSURF 1\n CURV 0.02\n DISZ 4\n GLAS PLASTIC\nSURF 2\n DISZ 9\n"
+        "SURF 3\n DISZ 0\n";
+    CHECK(parse_lens(text, "a.zmx", glasses).rows[0].glass.index == 1.4918);
+    CHECK(lens_refusal(text, "a.zmx").starts_with("a.zmx: line 6: unknown glass 'PLASTIC'"));
+
+    const LensPrescription lens = parse_lens(
+        "PRV\nPWL 656.3 587.6 486.1\n'MY_GLASS' 1.60 1.605 1.615\nEND\nRDM\nSO 0 1E13\nS 50 4 'MY_GLASS'\nS "
+        "0 9\nSI 0 0\n",
+        "a.seq");
+    CHECK(index_at(lens.rows[0].glass, SpectralLine::kC) == 1.6);
+    CHECK(std::fabs(lens.rows[0].glass.abbe - 0.605 / 0.015) < 1e-12);
+    const LensPrescription json = parse_lens(R"({"surfaces": [{"radius": 50, "thickness": 4,
+        "sellmeier": [1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653]}, {}]})",
+                                             "a.json");
+    CHECK(std::fabs(json.rows[0].glass.index - 1.5168) < 5e-6);
+}
+
+TEST_CASE("Q-type aspheres of JSON are normalised by their own radius, or by the aperture", "[scene][lens]") {
+    const auto side = [](const std::string& keys) {
+        return parse_lens(R"({"surfaces": [{"ior": 1.5, "thickness": 3, )" + keys + "}, {}]}", "a.json")
+            .rows[0]
+            .side;
+    };
+    const LensSide by_aperture = side(R"("aperture": 5, "qcon": [0.1, 0.02])");
+    CHECK(std::fabs(sag_at(by_aperture, 25).z - 0.12) < 1e-14);
+    CHECK(std::fabs(sag_at(side(R"("aperture": 4, "normalizationRadius": 5, "qcon": [0.1])"), 16).z -
+                    0.1 * 0.4096) < 1e-15);
+    const LensSide mild = side(R"("radius": 20, "aperture": 5, "qbfs": [0.1])");
+    CHECK(std::fabs(sag_at(mild, 25).z - sag_at(side(R"("radius": 20, "aperture": 5)"), 25).z) < 1e-15);
+    CHECK(departs_along_normal(mild));
+}
+
+TEST_CASE("words of lens files that cannot be followed are refused with their line",
+          "[scene][lens][bad-input]") {
+    const auto code_v = [](const std::string& words) {
+        return lens_refusal("RDM\nSO 0 1E13\nS -100 -50 REFL\n" + words + "\nSI 0 0\n", "a.seq");
+    };
+    CHECK(code_v("ADE 10; BEN").empty());
+    CHECK(code_v("ADE 10\nBDE 3\nBEN") == "a.seq: line 6: BEN is read with one of ADE and BDE alone");
+    CHECK(code_v("S 0 1\nADE 10; BEN") == "a.seq: line 5: BEN of a surface that is no mirror");
+    CHECK(code_v("XDE 1..2") == "a.seq: line 4: XDE needs a number, not \"1..2\"");
+    CHECK(code_v("YTO") == "a.seq: line 4: YTO: surfaces of revolution that refract or reflect are read");
+    CHECK(code_v("CIR HOL") == "a.seq: line 4: CIR needs a number, not \"HOL\"");
+    const auto prv = [](const std::string& table) {
+        return lens_refusal("PRV\n" + table + "\nEND\nRDM\nSO 0 1E13\nS 50 4 'G'\nS 0 9\nSI 0 0\n", "a.seq");
+    };
+    CHECK(prv("PWL 656.3 587.6 486.1\n'G' 1.5 1.51") == "a.seq: line 3: has 2 indices for 3 wavelengths");
+    CHECK(prv("'G' 1.5") == "a.seq: line 2: a private glass before its wavelengths (PWL)");
+    CHECK(prv("PWL 1064 1550\n'G' 1.5 1.49") ==
+          "a.seq: line 3: the line d is not among the wavelengths (PWL)");
+    CHECK(prv("PWL 656.3 587.6 486.1\n'G' 1.52 1.51 1.5") ==
+          "a.seq: line 3: the index of the glass G does not fall from blue to red");
+    const auto agf = [](const std::string& text) {
+        try {
+            parse_agf(text, "a.agf");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK(agf("CC\n") == "a.agf: has no line NM: it is no catalogue of glasses");
+    CHECK(agf("NM\n") == "a.agf: line 1: NM needs a name");
+    CHECK(agf("NM X 2\nCD 1 2 3\n") == "a.agf: line 2: CD needs a number");
+    CHECK(agf("NM X 9 0 0.5 1\n") == "a.agf: line 1: the glass X has no index from 1 to 10");
+    CHECK(agf("CD 1 2 3\n") == "a.agf: line 1: coefficients before a glass (NM)");
+    const auto json = [](const std::string& row) {
+        return lens_refusal(R"({"surfaces": [{"radius": -9, "thickness": 1, "ior": 1.5}, )" + row + "]}",
+                            "a.json");
+    };
+    CHECK(json(R"({"axisBehind": "bends"})") == "a.json: /surfaces/1/axisBehind: bends behind mirrors alone");
+    CHECK(json(R"({"mirror": true, "ior": 1.5})").find("'ior' is no key of a mirror") != std::string::npos);
+    CHECK(json(R"({"qbfs": [1]})") == "a.json: /surfaces/1/qbfs: needs an aperture or a normalizationRadius");
+    CHECK(json(R"({"aperture": 1, "conic": -1, "qbfs": [1]})") ==
+          "a.json: /surfaces/1/qbfs: departs from a sphere: the side's conic must be 0");
+    CHECK(json(R"({"sellmeier": [1, 2, 3]})").starts_with("a.json: /surfaces/1/sellmeier: "));
+    CHECK(json(R"({"qcon": [1, 2, 3, 4, 5, 6, 7, 8], "aperture": 1})")
+              .starts_with("a.json: /surfaces/1/qcon: "));
+}
