@@ -4,8 +4,9 @@
     PYTHONPATH=build/release/python bench/inverse.py [--threads T] [--points N] [--json FILE] [NAME...]
 
 Each row is a function named row_NAME: what was done, microseconds of processor time a point (the best of three), and
-how far it is from an independent answer. Published figures beside them: a projection by quadrics on a sphere 10 us, catadioptric cameras
-20 to 50 us (Agrawal, Taguchi and Ramalingam, Beyond Alhazen's problem, CVPR 2011).
+how far it is from an independent answer. Rows of inverse_others.py run other programs' own code. Published figures beside
+them: a projection by quadrics on a sphere 10 us, catadioptric cameras 20 to 50 us (Agrawal, Taguchi and Ramalingam, Beyond
+Alhazen's problem, CVPR 2011).
 """
 import argparse
 import json
@@ -15,6 +16,8 @@ import time
 import numpy as np
 
 import trilens
+from inverse_others import (row_ball_beside_omnidir, row_fisheye_beside_opencv,  # noqa: F401
+                            row_unwrap_beside_pfspanoramic)
 
 FILM = {"width": 1024, "height": 768}
 CAMERA = {"name": "main", "type": "perspective", "yfov": 40, "lookAt": {"eye": [0.2, 0.3, 4.5], "at": [0, 0, 0]}}
@@ -214,12 +217,33 @@ def row_fit_cage_pose(count):
             "note": f"{1e3 * seconds:.1f} ms in all, rms {found.rms:.2g} px"}
 
 
+def row_rigid_move(count):
+    """A cage of 14 faces moved in a renderer, and 60 points asked for again: from nothing, and from where they were."""
+    mesh = {**creased_cage(), "transform": {"translate": [0, 0, 0]}}
+    whole = trilens.parse_scene({"version": 1, "film": FILM, "cameras": [CAMERA], "materials": [CHROME],
+                                 "meshes": [mesh], "render": {"maxDepth": 0}}, warn=lambda message: None)
+    renderer, points = trilens.Renderer(whole), points_around(60)
+    start = renderer.project(points, visibility=False)
+    start = start[start["path"] == "reflect"]
+    steps = iter(range(1, 100))
+
+    def moved(**how):
+        renderer.change(whole.with_overrides({"/meshes/0/transform/translate": [1e-3 * next(steps), 0, 0]}))
+        return renderer.project(points, visibility=False, **how)
+
+    cold, _ = best_of(moved)
+    warm, _ = best_of(lambda: moved(start=start))
+    return {"what": "a cage moved in a renderer, 60 points", "us": 1e6 * cold,
+            "note": f"{1e3 * cold:.0f} ms searched anew, {1e3 * warm:.0f} ms from where they were: its surface is built again"}
+
+
 def row_warp_mesh(count):
     """A projector, a mirror ball and a dome: how far between its nodes the mesh is off, against rays of its cells."""
     dome = pathlib.Path(__file__).resolve().parent.parent / "scenes/inverse/dome.json"
     renderer = trilens.Renderer(trilens.load_scene(dome, warn=lambda message: None))
-    seconds, mesh = best_of(lambda: renderer.warp_mesh("fisheye:1024", proxy="sphere:3", center=(0, 0, 0)), 1)
-    return {"what": "warp mesh of a mirror dome, as fine as 0.5 px need", "us": 1e6 * seconds,
+    seconds, mesh = best_of(lambda: renderer.warp_mesh("fisheye:1024", proxy="sphere:3", center=(0, 0, 0),
+                                                       grid="target", max_error=0.01), 1)
+    return {"what": "warp mesh of a mirror dome, 0.01 px of the film", "us": 1e6 * seconds,
             "error": mesh["error_p99"], "unit": "px, p99", "note": f"{mesh['nodes'].shape[1]} x {mesh['nodes'].shape[0]} nodes"}
 
 

@@ -233,7 +233,7 @@ DesignWish wish_of(const py::object& given, const py::object& target, bool direc
                normal = patch["normal"].cast<std::array<double, 3>>(),
                tangent = patch["tangent"].cast<std::array<double, 3>>();
     const Vec3 up = cross(vec3(normal), vec3(tangent));
-    plane["origin"] = tuple_of(vec3(center) + 1e3 * vec3(normal));
+    plane["origin"] = tuple_of(vec3(center) + (dict.contains("lens") ? -1e3 : 1e3) * vec3(normal));
     plane["u"] = tuple_of(vec3(tangent));
     plane["v"] = tuple_of(up);
     dict["wish"] = plane;
@@ -255,10 +255,11 @@ DesignWish wish_of(const py::object& given, const py::object& target, bool direc
 }
 
 void bind_design(py::module_& module) {
-    py::class_<PythonDesign>(module, "Design", "A freeform mirror and how near it comes to its wish.")
+    py::class_<PythonDesign>(module, "Design",
+                             "A freeform mirror or lens, and how near it comes to its wish.")
         .def_property_readonly(
             "errors", [](const PythonDesign& self) { return errors_dict(self.errors); },
-            "{\"mean\", \"p95\", \"max\"}: degrees between reflected and wished rays.")
+            "{\"mean\", \"p95\", \"max\"}: degrees between leaving and wished rays.")
         .def_property_readonly(
             "sphere",
             [](const PythonDesign& self) -> py::object {
@@ -271,7 +272,7 @@ void bind_design(py::module_& module) {
             "for.")
         .def_property_readonly(
             "curl", [](const PythonDesign& self) { return self.curl; },
-            "Rms of what no mirror can do, 1 / length: 0 where the wish is some mirror's.")
+            "Rms of what no mirror or lens can do, 1 / length: 0 where the wish is some one's.")
         .def_property_readonly(
             "curl_flat", [](const PythonDesign& self) { return self.curl_flat; },
             "The same over the flat rectangle.")
@@ -290,7 +291,8 @@ void bind_design(py::module_& module) {
         .def_property_readonly(
             "converged", [](const PythonDesign& self) { return self.converged; }, "Whether it came to rest.")
         .def_property_readonly(
-            "warnings", [](const PythonDesign& self) { return self.warnings; }, "Of what no mirror does.")
+            "warnings", [](const PythonDesign& self) { return self.warnings; },
+            "Of what no mirror or lens does.")
         .def_property_readonly(
             "heights",
             [](const PythonDesign& self) {
@@ -303,13 +305,14 @@ void bind_design(py::module_& module) {
             [](const PythonDesign& self, double x, double y) {
                 return self.surface.height({x, y}).z;
             },
-            py::arg("x"), py::arg("y"), "The mirror's height over a place of its rectangle, from its middle.")
+            py::arg("x"), py::arg("y"),
+            "The surface's height over a place of its rectangle, from its middle.")
         .def_property_readonly(
             "scene",
             [](const PythonDesign& self) {
-                return parse_scene(design_scene(self.wish, self), "", {}, "mirror");
+                return parse_scene(design_scene(self.wish, self), "", {}, optic_word(self.wish));
             },
-            "The mirror with the eye as camera, and the wished plane.")
+            "The mirror or lens with the eye as camera, and the wished plane.")
         .def(
             "to_json", [](const PythonDesign& self) { return design_scene(self.wish, self); },
             "That scene as JSON text.")
@@ -322,14 +325,15 @@ void bind_design(py::module_& module) {
                              std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
             },
             py::arg("file"), py::arg("thickness") = 0.0,
-            "A closed body, binary STL; thickness: behind its lowest point, 0: a twentieth of its longer "
-            "side.")
+            "A closed body, binary STL; thickness: of a mirror behind its lowest point, 0: a twentieth of "
+            "its "
+            "longer side.")
         .def(
             "save_obj",
             [](const PythonDesign& self, const std::filesystem::path& file) {
                 replace_text_file(file.string(), design_obj(self));
             },
-            py::arg("file"), "The mirror as polygons with normals, Wavefront OBJ.")
+            py::arg("file"), "The designed surface as polygons with normals, Wavefront OBJ.")
         .def(
             "save_sag",
             [](const PythonDesign& self, const std::filesystem::path& file) {
@@ -359,15 +363,18 @@ void bind_design(py::module_& module) {
         py::arg("wish"), py::arg("target") = py::none(), py::kw_only(), py::arg("directions") = false,
         py::arg("compare_sphere") = false, py::arg("method") = "gauss-newton", py::arg("max_iterations") = 20,
         py::arg("progress") = py::none(),
-        "The freeform mirror whose reflections come nearest to a wish.\n\n"
+        "The freeform mirror whose reflections come nearest to a wish, or where the wish has \"lens\" the "
+        "front of a "
+        "lens.\n\n"
         "wish: a wish file, or a dict of the same form (wish_schema).\n"
         "target: (rows, columns, 3) instead of the dict's \"wish\": what is to be seen over the mirror as "
         "the eye\n"
         "  sees it, rows from below, the first and last at its rims: world points, or with `directions` "
         "directions.\n"
         "compare_sphere: find the best sphere too.\n"
-        "method: \"gauss-newton\" on the reflected rays, or \"picard\", linear on slopes.\n"
-        "Raises InputError for wishes that no mirror can have, ComputationError where no surface is found.");
+        "method: \"gauss-newton\" on the rays that leave, or \"picard\", linear on slopes.\n"
+        "Raises InputError for wishes that no mirror or lens can have, ComputationError where no surface is "
+        "found.");
     module.def(
         "wish_schema", [] { return py::module_::import("json").attr("loads")(wish_schema()); },
         "The JSON Schema (draft 7) of wish files, as a dict.");

@@ -263,11 +263,13 @@ void bind_map(RendererClass& renderer) {
         "warp_mesh",
         [](const Renderer& self, const std::string& to, int columns, int rows, const Name& camera,
            double max_error, const std::optional<Triple>& center, const std::string& proxy, const Name& optic,
-           const Name& word, const std::optional<PhotoFile>& file) {
-            FilmMapRequest request = map_request(self, {to, proxy, center, optic, {}}, word, camera);
+           const Name& path, const Name& word, const std::string& grid,
+           const std::optional<PhotoFile>& file) {
+            FilmMapRequest request = map_request(self, {to, proxy, center, optic, path}, word, camera);
+            const WarpGrid regular_on = require_named<WarpGrid>("grid", grid);
             request.way = MapWay::kView;
             const WarpMesh mesh = PythonCall().run([&] {
-                WarpMesh made = make_mesh(self, request, {columns, rows, max_error});
+                WarpMesh made = make_mesh(self, request, {columns, rows, max_error, regular_on});
                 if (file) write_mesh(file->string(), made);
                 return made;
             });
@@ -285,21 +287,26 @@ void bind_map(RendererClass& renderer) {
         },
         py::arg("to"), py::arg("columns") = 0, py::arg("rows") = 0, py::arg("camera") = py::none(),
         py::kw_only(), py::arg("max_error") = WarpMeshParams().max_error, py::arg("center") = py::none(),
-        py::arg("proxy") = "scene", py::arg("optic") = py::none(), py::arg("word") = py::none(),
-        py::arg("file") = py::none(),
+        py::arg("proxy") = "scene", py::arg("optic") = py::none(), py::arg("path") = py::none(),
+        py::arg("word") = py::none(), py::arg("grid") = "film", py::arg("file") = py::none(),
         "A warp mesh: the film of a projector as a grid of quadrilaterals, with their places in the picture "
         "that is "
         "projected.\n\n"
         "to: the picture, of directions: \"fisheye:N\" or \"equirect:WxH\". center, proxy, optic, word: as "
         "in map.\n"
-        "columns, rows: nodes; both 0: as many as keep 99 % of the cells' middles within max_error target "
-        "pixels.\n"
+        "grid: where the mesh is regular: \"film\", or \"target\": a fisheye in rays and rings, an equirect "
+        "in "
+        "columns and\nrows, so that cells are small at an optic's rim; then `path` says how, as in unwrap, "
+        "not "
+        "word.\n"
+        "columns, rows: nodes; both 0: as many as keep 99 % of the cells within max_error pixels (of the "
+        "target; "
+        "with\n  grid \"target\" of the film).\n"
         "file: written too: .data (Bourke's format) or .obj.\n"
         "Returns a dict: nodes (rows, columns, 5): film x and y, target x and y, in pixels from the top "
         "left, and "
         "intensity,\n0..1, negative where nothing is drawn; error_mean, error_p99, error_max: how far off "
-        "what is "
-        "interpolated in the\nmiddle of cells is, target pixels.\n"
+        "what programs\ninterpolate in cells is, bilinearly or on two triangles, in the same pixels.\n"
         "Raises UsageError for what the scene does not have, InputError where the film shows nothing, "
         "OutputError.");
 }

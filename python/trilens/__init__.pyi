@@ -424,7 +424,9 @@ class Renderer:
         center: Optional[_Triple] = None,
         proxy: str = "scene",
         optic: Optional[str] = None,
+        path: Optional[str] = None,
         word: Optional[str] = None,
+        grid: str = "film",
         file: Optional[_File] = None,
     ) -> dict[str, Any]: ...
     def draw_lines(

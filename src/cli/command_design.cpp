@@ -1,4 +1,4 @@
-// trilens design: a freeform mirror for a wanted map.
+// trilens design: a freeform mirror, or a lens' front, for a wanted map.
 #include <trilens/design.h>
 #include <trilens/utilities.h>
 
@@ -72,6 +72,8 @@ Answer run(const DesignOptions& options, Console& console) {
         throw UsageError("design needs a wish and -o MIRROR.json; --example prints a wish to start from");
     console.files().reads({options.wish});
     const DesignWish wish = read_wish(options.wish);
+    if (wish.lens && options.thickness > 0)
+        throw UsageError("--thickness is of mirrors: the wish says how thick the lens is");
     check_output(options.output, console);
     for (const std::string& file : {options.stl, options.obj, options.sag, options.sphere})
         if (!file.empty()) {
@@ -85,7 +87,7 @@ Answer run(const DesignOptions& options, Console& console) {
     const Stopwatch watch;
     const Design design = design_mirror(wish, request, console.progress("design"));
     const double seconds = watch.seconds();
-    console.note_stage("designed the mirror", watch);
+    console.note_stage(std::string("designed the ") + optic_word(wish), watch);
     for (const std::string& warning : design.warnings) console.warn(warning);
     write_files(options, wish, design);
     Answer answer = design_answer(design);
@@ -101,16 +103,16 @@ Answer run(const DesignOptions& options, Console& console) {
 Command design_command() {
     auto options = std::make_shared<DesignOptions>();
     Command command{.name = "design",
-                    .summary = "a freeform mirror in which an eye sees what is wished",
+                    .summary = "a freeform mirror or lens in which an eye sees what is wished",
                     .schema = "design"};
     command.options = {
         {.names = "WISH",
          .target = &options->wish,
-         .help = "a wish file: the eye, the mirror's rectangle, and what is to be seen where",
+         .help = "a wish file: the eye, the mirror's or the lens' rectangle, and what is to be seen where",
          .offer = Offer::kFile},
         {.names = "-o,--output",
          .target = &options->output,
-         .help = "the mirror as a scene, with the eye as its camera",
+         .help = "the mirror or lens as a scene, with the eye as its camera",
          .value = "MIRROR.json",
          .offer = Offer::kFile},
         {.names = "--compare",
@@ -124,16 +126,16 @@ Command design_command() {
          .offer = Offer::kFile},
         {.names = "--stl",
          .target = &options->stl,
-         .help = "the mirror as a closed body, for printing and milling",
+         .help = "the mirror or lens as a closed body, for printing and milling",
          .value = "FILE.stl",
          .offer = Offer::kFile},
         {.names = "--thickness",
          .target = &options->thickness,
-         .help = "of that body behind the mirror's lowest point; else a twentieth of its longer side",
+         .help = "of a mirror's body behind its lowest point; else a twentieth of its longer side",
          .range = {1e-9, 1e9}},
         {.names = "--obj",
          .target = &options->obj,
-         .help = "the mirror as polygons with normals",
+         .help = "the designed surface as polygons with normals",
          .value = "FILE.obj",
          .offer = Offer::kFile},
         {.names = "--sag",
@@ -143,7 +145,7 @@ Command design_command() {
          .offer = Offer::kFile},
         {.names = "--method",
          .target = &options->method,
-         .help = "gauss-newton: the reflected rays themselves; picard: linear, for slopes, faster",
+         .help = "gauss-newton: the rays that leave; picard: linear, for slopes, faster",
          .choices = {"gauss-newton", "picard"}},
         {.names = "--schema", .target = &options->schema, .help = "print the JSON Schema of wish files"},
         {.names = "--example",

@@ -16,7 +16,7 @@ namespace {
 struct MapOptions {
     SceneOptions scene;
     DirectionOptions direction;
-    std::string to, way, word, mesh = "auto", output;
+    std::string to, way, word, mesh = "auto", grid = "film", output;
     double tolerance = FilmMapRequest().tolerance, max_error = WarpMeshParams().max_error;
     bool t_up = false;
 };
@@ -34,6 +34,7 @@ Answer run_mesh(const MapOptions& options, const FilmMapRequest& request, const 
     if (options.way == "unwrap") throw UsageError("a mesh is of the film: --way view, or none");
     WarpMeshParams params;
     params.max_error = options.max_error;
+    params.grid = *find_named<WarpGrid>(options.grid);
     if (options.mesh != "auto") {
         const std::vector<int> size = parse_integers(options.mesh, 'x', 2, "--mesh");
         params.columns = size[0];
@@ -48,6 +49,7 @@ Answer run_mesh(const MapOptions& options, const FilmMapRequest& request, const 
         console.warn(
             fmt::format("the finest mesh is off by {:.3g} pixels between its nodes (p99)", mesh.error_p99));
     Answer answer = name_output(options.output, console);
+    answer.fields["grid"] = name_of(mesh.grid);
     answer.fields["columns"] = mesh.columns;
     answer.fields["rows"] = mesh.rows;
     answer.fields["drawn"] = mesh.drawn_count();
@@ -132,9 +134,17 @@ Command map_command() {
            .target = &options->mesh,
            .help = "nodes of a warp mesh; auto: as many as --max-error needs",
            .value = "NxM|auto"},
+          {.names = "--grid",
+           .target = &options->grid,
+           .help = "where a mesh is regular: on the film, or on the target (a fisheye in rays and rings), "
+                   "which needs "
+                   "fewer nodes at an optic's rim",
+           .choices = {"film", "target"}},
           {.names = "--max-error",
            .target = &options->max_error,
-           .help = "target pixels that 99 % of a mesh may be off between its nodes",
+           .help =
+               "pixels that 99 % of a mesh's cells may be off, as programs interpolate: of the target, with "
+               "--grid target of the film",
            .range = {1e-6, 1000}},
           {.names = "--t-up",
            .target = &options->t_up,

@@ -103,6 +103,17 @@ TEST_CASE("trilens design writes a scene that draws, and a closed body", "[cli][
         closed = closed && times == 1 && edges.count({edge.second, edge.first});
     CHECK(closed);
 
+    const std::string lens = write_file(folder, "lens.json", R"({"version": 1, "eye": [0, 0, 0.5],
+  "patch": {"center": [0, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [0.2, 0.16], "controls": [8, 8]},
+  "lens": {"ior": 1.5, "thickness": 0.05},
+  "wish": {"type": "plane", "origin": [-0.1, -0.08, -0.6], "u": [0.2, 0, 0], "v": [0, 0.16, 0]}})");
+    CHECK(
+        run_trilens("design " + lens + " -o " + folder + "/body.json --stl " + folder + "/b.stl").exit_code ==
+        0);
+    CHECK(run_trilens("trace " + folder + "/body.json --size 32x26 --spp 1 -o " + folder + "/b.png")
+              .exit_code == 0);
+    CHECK(run_trilens("design " + lens + " -o " + folder + "/no.json --thickness 1").exit_code == 2);
+
     CHECK(run_trilens("design " + wish).exit_code == 2);
     const std::string bad = write_file(folder, "bad.json", "{\"version\": 1}");
     CHECK(run_trilens("design " + bad + " -o " + folder + "/no.json").exit_code == 3);

@@ -71,3 +71,16 @@ def test_a_design_is_nearer_to_its_wish_than_a_sphere(tmp_path):
         trilens.design_mirror({**wish, "eye": [0, 0, -1]}, target=wall)
     with pytest.raises(trilens.UsageError, match="target"):
         trilens.design_mirror(wish, target=wall[0])
+
+
+def test_a_designed_lens_is_a_closed_body_and_makes_light_parallel(tmp_path):
+    wish = {"version": 1, "eye": [0, 0, 0.5], "lens": {"ior": 1.5, "thickness": 0.08},
+            "patch": {"center": [0, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [0.2, 0.2],
+                      "controls": [20, 20]}}
+    lens = trilens.design_mirror(wish, target=np.tile([0.0, 0, -1], (4, 4, 1)), directions=True)
+    # Descartes' hyperboloid: (n^2 - 1) z^2 - 2 d (n - 1) z = x^2 + y^2.
+    height = (0.25 - np.sqrt(0.0625 + 1.25 * (0.07 ** 2 + 0.05 ** 2))) / 1.25
+    assert lens.height(0.07, 0.05) == pytest.approx(height, abs=1e-7)
+    assert not lens.scene.warnings
+    rays, _ = trilens.Renderer(lens.scene).shoot([[320, 320], [250, 400.0]], path="TT")
+    assert rays["direction"][:, 2] == pytest.approx(-1, abs=1e-9)

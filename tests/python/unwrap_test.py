@@ -97,6 +97,9 @@ def test_a_warp_mesh_and_an_anamorphosis(tmp_path):
     assert mesh["nodes"].shape == (19, 33, 5) and mesh["error_mean"] > 0
     lines = (tmp_path / "warp.data").read_text().split("\n")
     assert lines[:2] == ["2", "33 19"] and len(lines) == 2 + 33 * 19 + 1
+    rings = dome.warp_mesh("fisheye:512", 65, 17, proxy="sphere:3", center=(0, 0, 0), grid="target")
+    radius = np.hypot(*(rings["nodes"][..., 2:4] - 256).transpose(2, 0, 1))
+    assert np.allclose(radius, 256 * np.linspace(0, 1, 17)[:, None]) and rings["error_p99"] < 20
 
     scene = trilens.load_scene(str(SCENES / "inverse/anamorph-ball.json"), {"/film/width": 256, "/film/height": 192})
     ramp = np.linspace(0.2, 0.8, 64, dtype=np.float32)

@@ -136,11 +136,11 @@ class HeightSolver {
     NormalEquations equations_;
 };
 
-[[noreturn]] void fail_at_place(const Vec2& at) {
+[[noreturn]] void fail_at_place(const DesignWish& wish, const Vec2& at) {
     throw ComputationError(
-        fmt::format("no mirror reflects the eye's ray at ({:.4g}, {:.4g}) of the rectangle as wished: the "
+        fmt::format("no {} sends the eye's ray at ({:.4g}, {:.4g}) of the rectangle as wished: the "
                     "normal would lie in it",
-                    at.x, at.y));
+                    optic_word(wish), at.x, at.y));
 }
 
 /// Takes the solver's heights; their largest change.
@@ -165,7 +165,7 @@ double picard_step(const DesignWish& wish, const WishedRays& rays, std::span<con
     for (const Vec2& at : samples) {
         const HeightBasis basis = field.basis(at);
         const NeededSlopes needed = needed_slopes(rays, Vec3(at, field.height(at).z));
-        if (!needed.is_possible) fail_at_place(at);
+        if (!needed.is_possible) fail_at_place(wish, at);
         solver.add(basis, basis.x, needed.slopes.x, weight);
         solver.add(basis, basis.y, needed.slopes.y, weight);
     }
@@ -217,12 +217,20 @@ void measure(const DesignWish& wish, const WishedRays& rays, std::span<const Vec
     design.curl = rms(design.curl_map.values);
     design.curl_flat = rms(flat);
     design.sag = highest - lowest;
+    if (wish.lens) {
+        design.back = -wish.lens->thickness;
+        if (!(lowest > *design.back))
+            throw ComputationError(fmt::format(
+                "the front would cut the back: its lowest point is {:.4g} below the rectangle, and the lens "
+                "{:.4g} thick",
+                -lowest, wish.lens->thickness));
+    }
     design.smallest_radius = 1 / curvature;
     if (design.curl * std::max(wish.patch.size.x, wish.patch.size.y) > kTellingCurl)
         design.warnings.push_back(
-            fmt::format("no mirror does what is wished: the slopes that it needs have a curl of "
+            fmt::format("no {} does what is wished: the slopes that it needs have a curl of "
                         "{:.3g} per unit of length (rms), and {:.3g} degrees are left in the mean",
-                        design.curl, design.errors.mean));
+                        optic_word(wish), design.curl, design.errors.mean));
 }
 
 }  // namespace

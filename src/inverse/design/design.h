@@ -84,9 +84,17 @@ struct MirrorPatch {
     std::array<int, 2> controls{12, 12};  // control points along both, 4..200
 };
 
+/// A lens instead of a mirror: what is designed is its front, towards the eye; its back is a plane, parallel
+/// to the rectangle.
+struct DesignLens {
+    double ior = 1.5;      // of its glass: above 1, at most 10
+    double thickness = 1;  // > 0: from the rectangle to the back
+};
+
 struct DesignWish {
     Vec3 eye{0};  // world
     MirrorPatch patch;
+    std::optional<DesignLens> lens;  // none: a mirror
     WishMap wish;
     Vec2 anchor{0};  // where on the rectangle, from its middle, the mirror stays in it
     double fairness =
@@ -107,6 +115,11 @@ std::string wish_example();
 /// rectangle, a wished ray that goes into the mirror.
 void check_wish(const DesignWish& wish, const std::string& name = "wish");
 
+/// "mirror" or "lens": what the wish is of.
+inline const char* optic_word(const DesignWish& wish) {
+    return wish.lens ? "lens" : "mirror";
+}
+
 /// World and rectangle: x along the tangent, z along the normal.
 struct PatchFrame {
     Vec3 center{0};
@@ -123,9 +136,14 @@ class WishedRays {
     explicit WishedRays(const DesignWish& wish);
 
     const Vec3& eye() const { return eye_; }
-    /// The unit direction in which light is to leave for what the eye is to see, at a place of the mirror
-    /// (rectangle's frame).
-    Vec3 wanted(const Vec3& place) const;
+    /// None: it is of a mirror.
+    const std::optional<DesignLens>& lens() const { return wish_.lens; }
+
+    /// The unit direction in which light is to leave for what the eye is to see at a place of the surface,
+    /// where it leaves `from` there (of a lens: its back); rectangle's frame.
+    Vec3 wanted(const Vec3& place, const Vec3& from) const;
+    /// The same of a mirror, which it leaves at that place.
+    Vec3 wanted(const Vec3& place) const { return wanted(place, place); }
 
   private:
     Vec3 value(const Vec2& st) const;
@@ -178,11 +196,12 @@ struct Design {
     int iterations = 0;
     bool converged = false;
     PatchMap error_map, curl_map;       // degrees; 1 / length
-    std::vector<std::string> warnings;  // of what no mirror does
+    std::optional<double> back;         // of a lens: the height of its back
+    std::vector<std::string> warnings;  // of what no mirror or lens does
 };
 
-/// The mirror. Throws InputError as check_wish does, ComputationError where no surface is found (rays that
-/// leave the rectangle's front), Interrupted.
+/// The mirror, or the lens. Throws InputError as check_wish does, ComputationError where no surface is found
+/// (rays that leave the rectangle's front; a front that cuts the lens' back), Interrupted.
 Design design_mirror(const DesignWish& wish, const DesignRequest& request = {},
                      const Progress& progress = {});
 
@@ -193,12 +212,14 @@ Design design_of_sphere(const DesignWish& wish, const Design& design);
 /// Its control net in the world, whose limit surface it is (no boundary interpolated).
 Cage design_cage(const DesignWish& wish, const Design& design);
 
-/// A scene with the mirror, the eye as its camera, and the wished plane with squares on it: JSON.
+/// A scene with the mirror or the lens (a closed body of six B-spline patches), the eye as its camera, and
+/// the wished plane with squares on it: JSON.
 std::string design_scene(const DesignWish& wish, const Design& design);
 
 // The surface for makers, in the rectangle's frame and the wish's lengths, with `steps` x `steps` squares.
 
-/// A closed body, binary STL: the mirror in front, a plane back `thickness` behind its lowest point.
+/// A closed body, binary STL: the mirror in front, a plane back `thickness` behind its lowest point; of a
+/// lens its own back.
 std::string design_stl(const Design& design, double thickness, int steps = 160);
 /// The mirror alone, Wavefront OBJ, with normals.
 std::string design_obj(const Design& design, int steps = 160);

@@ -83,9 +83,8 @@ std::vector<MadePoint> made_points(const HeightField& surface, int steps) {
 
 class StlBytes {
   public:
-    StlBytes() : bytes_(84, '\0') {
-        const char title[] = "trilens mirror, closed body";
-        std::memcpy(bytes_.data(), title, sizeof title - 1);
+    explicit StlBytes(const std::string& title) : bytes_(84, '\0') {
+        std::memcpy(bytes_.data(), title.data(), std::min<std::size_t>(title.size(), 80));
     }
     void add(const Vec3& a, const Vec3& b, const Vec3& c) {
         const Vec3 normal = normalize_or_zero(cross(b - a, c - a));
@@ -131,10 +130,91 @@ Cage design_cage(const DesignWish& wish, const Design& design) {
     return cage;
 }
 
-std::string design_scene(const DesignWish& wish, const Design& design) {
+namespace {
+
+Json mirror_json(const DesignWish& wish, const Design& design) {
     const Cage cage = design_cage(wish, design);
     Json points = Json::array();
     for (const Vec3& point : cage.points) points.push_back(triple_json(point));
+    return {{"name", "mirror"},
+            {"role", "optic"},
+            {"material", "mirror"},
+            {"subdivisionScheme", "catmullClark"},
+            {"interpolateBoundary", "none"},
+            {"points", points},
+            {"faceVertexCounts", cage.face_vertex_counts},
+            {"faceVertexIndices", cage.face_vertex_indices}};
+}
+
+/// Rows of control points of a uniform bicubic B-spline, in the rectangle's frame.
+using ControlRows = std::vector<std::vector<Vec3>>;
+
+/// The curve in which such a surface ends: the row beside which it has one more, weighted as cubics are
+/// there.
+std::vector<Vec3> end_curve(const ControlRows& rows) {
+    std::vector<Vec3> curve;
+    for (std::size_t k = 0; k < rows[0].size(); ++k)
+        curve.push_back((rows[0][k] + 4.0 * rows[1][k] + rows[2][k]) / 6.0);
+    return curve;
+}
+
+/// A wall straight from one curve to another.
+ControlRows straight_wall(const std::vector<Vec3>& top, const std::vector<Vec3>& bottom) {
+    ControlRows rows(4, top);
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t k = 0; k < top.size(); ++k)
+            rows[row][k] = top[k] + (static_cast<double>(row) - 1) * (bottom[k] - top[k]);
+    return rows;
+}
+
+ControlRows transposed(const ControlRows& rows) {
+    ControlRows turned(rows[0].size());
+    for (const std::vector<Vec3>& row : rows)
+        for (std::size_t k = 0; k < row.size(); ++k) turned[k].push_back(row[k]);
+    return turned;
+}
+
+ControlRows reversed(ControlRows rows) {
+    std::reverse(rows.begin(), rows.end());
+    return rows;
+}
+
+Json spline_json(const PatchFrame& frame, const ControlRows& rows) {
+    Json points = Json::array();
+    for (const std::vector<Vec3>& row : rows)
+        for (const Vec3& point : row) points.push_back(triple_json(frame.to_world(point)));
+    return {{"type", "bspline"}, {"columns", rows[0].size()}, {"points", points}};
+}
+
+/// A closed body: front, back, and four walls between the curves in which these end, all facing outward.
+Json lens_json(const DesignWish& wish, const Design& design) {
+    const HeightField& field = design.surface;
+    ControlRows front(static_cast<std::size_t>(field.controls[1])), back;
+    for (int row = 0; row < field.controls[1]; ++row)
+        for (int column = 0; column < field.controls[0]; ++column)
+            front[static_cast<std::size_t>(row)].emplace_back(
+                field.control_place(column, row),
+                field.heights[static_cast<std::size_t>(row * field.controls[0] + column)]);
+    back = front;
+    for (std::vector<Vec3>& row : back)
+        for (Vec3& point : row) point.z = *design.back;
+    const PatchFrame frame(wish.patch);
+    Json patches = Json::array({spline_json(frame, front), spline_json(frame, reversed(back))});
+    // Seen from outside, with u along the end of the front: below, above, left and right of the rectangle.
+    const ControlRows across = transposed(front), across_back = transposed(back);
+    patches.push_back(spline_json(frame, reversed(straight_wall(end_curve(front), end_curve(back)))));
+    patches.push_back(
+        spline_json(frame, straight_wall(end_curve(reversed(front)), end_curve(reversed(back)))));
+    patches.push_back(spline_json(frame, straight_wall(end_curve(across), end_curve(across_back))));
+    patches.push_back(spline_json(
+        frame, reversed(straight_wall(end_curve(reversed(across)), end_curve(reversed(across_back))))));
+    return {
+        {"name", "lens"}, {"role", "optic"}, {"material", "glass"}, {"resolution", 4}, {"patches", patches}};
+}
+
+}  // namespace
+
+std::string design_scene(const DesignWish& wish, const Design& design) {
     Json scene{{"version", 1}};
     const double aspect = wish.patch.size.y / wish.patch.size.x;
     scene["film"] = {
@@ -143,15 +223,10 @@ std::string design_scene(const DesignWish& wish, const Design& design) {
         {"spp", 3}};
     scene["cameras"] = Json::array({camera_json(wish)});
     scene["background"] = {{"color", {0.55, 0.65, 0.8}}};
-    scene["materials"] = Json::array({{{"name", "mirror"}, {"metallicFactor", 1}, {"roughnessFactor", 0}}});
-    scene["meshes"] = Json::array({{{"name", "mirror"},
-                                    {"role", "optic"},
-                                    {"material", "mirror"},
-                                    {"subdivisionScheme", "catmullClark"},
-                                    {"interpolateBoundary", "none"},
-                                    {"points", points},
-                                    {"faceVertexCounts", cage.face_vertex_counts},
-                                    {"faceVertexIndices", cage.face_vertex_indices}}});
+    scene["materials"] =
+        Json::array({wish.lens ? Json{{"name", "glass"}, {"transmissionFactor", 1}, {"ior", wish.lens->ior}}
+                               : Json{{"name", "mirror"}, {"metallicFactor", 1}, {"roughnessFactor", 0}}});
+    scene["meshes"] = Json::array({wish.lens ? lens_json(wish, design) : mirror_json(wish, design)});
     if (wish.wish.type == WishType::kPlane) {
         scene["materials"].push_back(
             {{"name", "light"}, {"baseColorFactor", {0.9, 0.88, 0.8}}, {"unlit", true}});
@@ -167,12 +242,12 @@ std::string design_stl(const Design& design, double thickness, int steps) {
     const std::vector<MadePoint> front = made_points(design.surface, steps);
     double lowest = std::numeric_limits<double>::infinity();
     for (const MadePoint& point : front) lowest = std::min(lowest, point.place.z);
-    const double back = lowest - thickness;
+    const double back = design.back.value_or(lowest - thickness);
     const auto at = [&](int column, int row) {
         return front[static_cast<std::size_t>(row * (steps + 1) + column)].place;
     };
     const auto behind = [&](int column, int row) { return Vec3(Vec2(at(column, row)), back); };
-    StlBytes stl;
+    StlBytes stl(std::string("trilens ") + (design.back ? "lens" : "mirror") + ", closed body");
     const auto add_square = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
         stl.add(a, b, c);
         stl.add(a, c, d);
@@ -193,7 +268,8 @@ std::string design_stl(const Design& design, double thickness, int steps) {
 }
 
 std::string design_obj(const Design& design, int steps) {
-    std::string text = "# trilens mirror: x along the tangent, z along the normal\no mirror\n";
+    const std::string what = design.back ? "lens" : "mirror";
+    std::string text = "# trilens " + what + ": x along the tangent, z along the normal\no " + what + "\n";
     const std::vector<MadePoint> points = made_points(design.surface, steps);
     for (const MadePoint& p : points)
         text += fmt::format("v {:.12g} {:.12g} {:.12g}\n", p.place.x, p.place.y, p.place.z);

@@ -8,6 +8,7 @@
 #include "base/util/error.h"
 #include "inverse/solve/least_squares.h"
 #include "reflect/reflection.h"
+#include "refract/refraction.h"
 
 namespace trilens {
 
@@ -95,6 +96,7 @@ Design design_of_sphere(const DesignWish& wish, const Design& design) {
     Design sphere;
     sphere.surface = HeightField(wish.patch.size, wish.patch.controls);
     sphere.errors = design.sphere->errors;
+    sphere.back = design.back;
     NormalEquations equations(sphere.surface.heights.size());
     for (const Vec2& at :
          patch_samples(wish.patch.size, {4 * wish.patch.controls[0], 4 * wish.patch.controls[1]})) {
@@ -116,22 +118,32 @@ std::vector<Vec2> patch_samples(const Vec2& size, const std::array<int, 2>& coun
     return samples;
 }
 
-NeededSlopes needed_slopes(const WishedRays& wish, const Vec3& place) {
-    const Vec3 normal = normalize(wish.eye() - place) + wish.wanted(place);
-    if (!(normal.z > 1e-6)) return {Vec2(0), false};
-    return {Vec2(-normal.x, -normal.y) / normal.z, true};
+namespace {
+
+/// The wished direction as it is in the glass before it leaves the plane back, from a place of the front:
+/// where it leaves depends on it, so that it is found again and again. None where that does not come to rest,
+/// as for points near the back, and where the wish is not behind the lens.
+std::optional<Vec3> wished_in_glass(const WishedRays& wish, const Vec3& place) {
+    constexpr int kMostSteps = 100;
+    const DesignLens& lens = *wish.lens();
+    Vec3 in_glass = normalize(place - wish.eye());
+    for (int k = 0; k < kMostSteps; ++k) {
+        const Vec3 from = place - (lens.thickness + place.z) / in_glass.z * in_glass;
+        const Vec3 wanted = wish.wanted(place, from);
+        if (!(wanted.z < -1e-6)) return std::nullopt;
+        const Vec2 across = Vec2(wanted) / lens.ior;
+        const Vec3 next(across, -std::sqrt(1 - dot(across, across)));
+        const double moved = length(next - in_glass);
+        in_glass = next;
+        if (moved < 1e-15) return in_glass;
+    }
+    return std::nullopt;
 }
 
-Vec3 ray_residual(const WishedRays& wish, const Vec2& at, const Height& h) {
-    const Vec3 place(at, h.z), normal = normalize(Vec3(-h.x, -h.y, 1));
-    return mirrored(normalize(place - wish.eye()), normal) - wish.wanted(place);
-}
-
-RayRows ray_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale) {
+RayRows mirror_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale) {
     const Vec3 place(at, h.z), up(-h.x, -h.y, 1), u = normalize(up), from_eye = place - wish.eye();
     const Vec3 d = normalize(from_eye);
     RayRows rows;
-    rows.residual = ray_residual(wish, at, h);
     // d turns by (e_z - d d_z) / |P - E|, and the wished direction moves with the place.
     const double step = 1e-5 * length_scale;
     const Vec3 wish_moves =
@@ -144,6 +156,57 @@ RayRows ray_rows(const WishedRays& wish, const Vec2& at, const Height& h, double
     };
     rows.by_x = by_slope({1, 0, 0});
     rows.by_y = by_slope({0, 1, 0});
+    return rows;
+}
+
+/// By central differences.
+RayRows lens_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale) {
+    const auto change = [&](double Height::*number, double step) {
+        Height low = h, high = h;
+        low.*number -= step, high.*number += step;
+        return (ray_residual(wish, at, high) - ray_residual(wish, at, low)) / (2 * step);
+    };
+    RayRows rows;
+    rows.by_z = change(&Height::z, 1e-5 * length_scale);
+    rows.by_x = change(&Height::x, 1e-5);
+    rows.by_y = change(&Height::y, 1e-5);
+    return rows;
+}
+
+}  // namespace
+
+NeededSlopes needed_slopes(const WishedRays& wish, const Vec3& place) {
+    const Vec3 to_eye = normalize(wish.eye() - place);
+    Vec3 normal(0);
+    if (!wish.lens())
+        normal = to_eye + wish.wanted(place);
+    else if (const std::optional<Vec3> in_glass = wished_in_glass(wish, place))
+        normal = -to_eye - wish.lens()->ior * *in_glass;
+    if (!(normal.z > 1e-6) || !(dot(normal, to_eye) > 0)) return {Vec2(0), false};
+    return {Vec2(-normal.x, -normal.y) / normal.z, true};
+}
+
+Ray leaving_ray(const WishedRays& wish, const Vec2& at, const Height& h) {
+    const Vec3 place(at, h.z), normal = normalize(Vec3(-h.x, -h.y, 1));
+    const Vec3 incoming = normalize(place - wish.eye());
+    if (!wish.lens()) return {place, mirrored(incoming, normal)};
+    const DesignLens& lens = *wish.lens();
+    const std::optional<Vec3> in_glass = refracted(incoming, normal, 1 / lens.ior);
+    if (!in_glass || !(in_glass->z < 0)) return {place, -incoming};
+    const Vec3 from = place - (lens.thickness + h.z) / in_glass->z * *in_glass;
+    const std::optional<Vec3> out = refracted(*in_glass, {0, 0, 1}, lens.ior);
+    return {from, out ? normalize(*out) : -incoming};
+}
+
+Vec3 ray_residual(const WishedRays& wish, const Vec2& at, const Height& h) {
+    const Ray ray = leaving_ray(wish, at, h);
+    return ray.direction - wish.wanted(Vec3(at, h.z), ray.origin);
+}
+
+RayRows ray_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale) {
+    RayRows rows =
+        wish.lens() ? lens_rows(wish, at, h, length_scale) : mirror_rows(wish, at, h, length_scale);
+    rows.residual = ray_residual(wish, at, h);
     return rows;
 }
 

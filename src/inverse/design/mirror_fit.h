@@ -1,9 +1,10 @@
-// What the design of a mirror is fitted by: the sphere to begin with, and the rows of one sample.
+// What the design of a mirror or a lens is fitted by: the sphere to begin with, and the rows of one sample.
 #pragma once
 
 #include <array>
 #include <span>
 
+#include "base/raymesh/ray_mesh.h"
 #include "inverse/design/design.h"
 
 namespace trilens {
@@ -19,20 +20,27 @@ BestSphere best_sphere(const DesignWish& wish, const WishedRays& rays, std::span
 /// (anchor, 0) with slopes `tilt` there; none where the sphere does not reach so far.
 std::optional<Height> sphere_height(double curvature, const Vec2& tilt, const Vec2& at);
 
-// One sample of a mirror in design: its reflected ray, the slopes that the wish needs, and their derivatives.
+// One sample of a surface in design: the ray that leaves, the slopes that the wish needs, and their
+// derivatives.
 
 /// Where the samples of a rectangle lie: middles of columns x rows equal parts, row by row.
 std::vector<Vec2> patch_samples(const Vec2& size, const std::array<int, 2>& counts);
 
-/// Slopes dz/dx, dz/dy for which the eye's ray at a place leaves in the wished direction (both of them unit:
-/// the normal halves their angle). The z of the normal is 0 or less where no mirror does it.
+/// Slopes dz/dx, dz/dy for which the eye's ray at a place leaves in the wished direction. Of a mirror the
+/// normal halves the angle of both; of a lens it is along their difference, times the index, in the glass
+/// (Snell). Not possible where the z of that normal is 0 or less.
 struct NeededSlopes {
     Vec2 slopes{0};
     bool is_possible = true;
 };
 NeededSlopes needed_slopes(const WishedRays& wish, const Vec3& place);
 
-/// The reflected ray minus the wished one, both unit, at (at, h.z) with the slopes of h.
+/// The eye's ray that meets the surface at (at, h.z) with the slopes of h, as it leaves: mirrored there, or
+/// refracted into a lens and out of its back. Unit; the eye's ray turned around where its back reflects all
+/// of it.
+Ray leaving_ray(const WishedRays& wish, const Vec2& at, const Height& h);
+
+/// Its direction minus the wished one, both unit.
 Vec3 ray_residual(const WishedRays& wish, const Vec2& at, const Height& h);
 
 /// How that residual moves with z at fixed slopes, and with either slope at fixed z.
@@ -41,7 +49,7 @@ struct RayRows {
 };
 RayRows ray_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale);
 
-/// The angle between the reflected ray and the wished one, degrees.
+/// The angle between the leaving ray and the wished one, degrees.
 double ray_error(const WishedRays& wish, const Vec2& at, const Height& h);
 
 /// (p_y + p_z q) - (q_x + q_z p) of the needed slopes p, q at (x, y, z): 0 where they are some surface's

@@ -59,6 +59,15 @@ const std::vector<Field<WishMap>>& map_fields() {
     return fields;
 }
 
+const std::vector<Field<DesignLens>>& lens_fields() {
+    static const std::vector<Field<DesignLens>> fields{
+        setting("ior", &DesignLens::ior, number_in(1, 10), "Of its glass, above 1."),
+        setting("thickness", &DesignLens::thickness, ref("positive"),
+                "From the rectangle to the back, a plane.")
+            .without_default()};
+    return fields;
+}
+
 const std::vector<Field<DesignWish>>& wish_fields() {
     using D = DesignWish;
     static const std::vector<Field<D>> fields = [] {
@@ -71,8 +80,11 @@ const std::vector<Field<DesignWish>>& wish_fields() {
         Field<D> version = part<D>("version", {{"const", 1}});
         return std::vector<Field<D>>{
             std::move(version),
-            setting("eye", &D::eye, ref("vec3"), "Who looks into the mirror, world.").without_default(),
+            setting("eye", &D::eye, ref("vec3"), "Who looks into the mirror, or through the lens, world.")
+                .without_default(),
             part<D>("patch", ref("patch"), "The rectangle under the mirror."),
+            part<D>("lens", ref("lens"),
+                    "A lens instead of a mirror, its back a plane; what is designed is its front."),
             part<D>("wish", ref("wish"), "What is seen at (s, t), 0..1 each over the rectangle."),
             setting("anchor", &D::anchor, several(2, ref("number")),
                     "Where the mirror stays in the rectangle, from its middle, along both sides."),
@@ -85,11 +97,12 @@ const std::vector<Field<DesignWish>>& wish_fields() {
 
 const Json& wish_schema_json() {
     static const Json schema = [] {
-        Json root =
-            object_schema({.title = "a wish",
-                           .description = "What an eye is to see in a mirror. Right-handed; any one length.",
-                           .required = {"version", "eye", "patch", "wish"}},
-                          wish_fields());
+        Json root = object_schema(
+            {.title = "a wish",
+             .description =
+                 "What an eye is to see in a mirror or through a lens. Right-handed; any one length.",
+             .required = {"version", "eye", "patch", "wish"}},
+            wish_fields());
         Json whole{{"$schema", "http://json-schema.org/draft-07/schema#"},
                    {"$id", "trilens-wish-1.schema.json"}};
         whole.update(root);
@@ -101,6 +114,7 @@ const Json& wish_schema_json() {
             {"vec3", vec3},
             {"patch", object_schema({.title = "a patch", .required = {"center", "normal", "tangent", "size"}},
                                     patch_fields())},
+            {"lens", object_schema({.title = "a lens", .required = {"thickness"}}, lens_fields())},
             {"wish", object_schema({.title = "a wish's map", .required = {"type"}, .kind_title = "a # wish"},
                                    map_fields())}};
         check_keywords(whole);
@@ -156,6 +170,7 @@ DesignWish parse_wish(const std::string& text, const std::string& name, const st
     DesignWish wish;
     read_fields(root, wish_fields(), wish);
     read_fields(root["patch"], patch_fields(), wish.patch);
+    if (root.has("lens")) read_fields(root["lens"], lens_fields(), wish.lens.emplace());
     read_fields(root["wish"], map_fields(), wish.wish);
     if (wish.wish.type == WishType::kMap) read_wish_map(root["wish"], folder, wish.wish);
     check_wish(wish, name);

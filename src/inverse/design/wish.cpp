@@ -5,6 +5,7 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "inverse/design/mirror_fit.h"
 
 namespace trilens {
 namespace {
@@ -92,7 +93,7 @@ Vec3 WishedRays::value(const Vec2& st) const {
             const double longitude = kRadians * (map.window[0] + st.x * (map.window[2] - map.window[0])),
                          latitude = kRadians * (map.window[1] + st.y * (map.window[3] - map.window[1]));
             return {std::sin(longitude) * std::cos(latitude), std::sin(latitude),
-                    std::cos(longitude) * std::cos(latitude)};
+                    (wish_.lens ? -1 : 1) * std::cos(longitude) * std::cos(latitude)};
         }
         case WishType::kMap:
             return map_value(map, st);
@@ -100,7 +101,7 @@ Vec3 WishedRays::value(const Vec2& st) const {
     return Vec3(0);
 }
 
-Vec3 WishedRays::wanted(const Vec3& place) const {
+Vec3 WishedRays::wanted(const Vec3& place, const Vec3& from) const {
     // Where the eye's ray to the place crosses the plane through the middle at right angles to the view.
     const Vec3 ray = place - eye_, look = -normalize(eye_);
     const Vec3 right = normalize(Vec3(1, 0, 0) - look.x * look), up = cross(right, look);
@@ -113,7 +114,7 @@ Vec3 WishedRays::wanted(const Vec3& place) const {
     if (map.type == WishType::kEquirectangular) return wanted;
     if (map.type == WishType::kMap && map.is_directions)
         return normalize(glm::transpose(frame_.world_from_patch) * wanted);
-    return normalize(frame_.to_patch(wanted) - place);
+    return normalize(frame_.to_patch(wanted) - from);
 }
 
 void check_wish(const DesignWish& wish, const std::string& name) {
@@ -126,13 +127,20 @@ void check_wish(const DesignWish& wish, const std::string& name) {
     if (std::abs(wish.anchor.x) > wish.patch.size.x / 2 || std::abs(wish.anchor.y) > wish.patch.size.y / 2)
         refuse_wish(name, "/anchor", "lies beside the rectangle");
     const WishedRays rays(wish);
-    if (!(rays.eye().z > 0)) refuse_wish(name, "/eye", "lies behind the mirror's rectangle, or in its plane");
+    if (!(rays.eye().z > 0))
+        refuse_wish(name, "/eye",
+                    std::string("lies behind the ") + optic_word(wish) + "'s rectangle, or in its plane");
+    if (wish.lens && !(wish.lens->ior > 1 && wish.lens->ior <= 10))
+        refuse_wish(name, "/lens/ior", "is not above 1 and at most 10");
+    if (wish.lens && !(wish.lens->thickness > 0 && std::isfinite(wish.lens->thickness)))
+        refuse_wish(name, "/lens/thickness", "is not above 0");
     for (const double s : {0.0, 0.5, 1.0})
         for (const double t : {0.0, 0.5, 1.0}) {
             const Vec3 place((s - 0.5) * wish.patch.size.x, (t - 0.5) * wish.patch.size.y, 0);
-            if (!(normalize(rays.eye() - place).z + rays.wanted(place).z > 1e-6))
-                refuse_wish(name, "/wish",
-                            fmt::format("at ({}, {}) of the mirror the wished ray goes into it", s, t));
+            if (needed_slopes(rays, place).is_possible) continue;
+            const char* why = wish.lens ? "at ({}, {}) of the lens no light leaves its back as wished"
+                                        : "at ({}, {}) of the mirror the wished ray goes into it";
+            refuse_wish(name, "/wish", fmt::format(fmt::runtime(why), s, t));
         }
 }
 

@@ -11,7 +11,8 @@ namespace {
 constexpr double kHalfPixel = 0.25;  // differences: from so much before to so much behind
 
 bool is_asked_for(const World& world, const FilmImagesParams& params, const WorldImage& image) {
-    if (!image.inside || image.weight == Vec3(0) || (params.visibility && !image.visible)) return false;
+    if ((!image.inside && !params.beyond_film) || image.weight == Vec3(0)) return false;
+    if (params.visibility && !image.visible) return false;
     if (image.path == Path::kDirect) return params.path == Path::kDirect;
     if (params.optic && image.optic != *params.optic) return false;
     const Path wanted =

@@ -25,11 +25,12 @@ struct FilmImagesParams {
     std::optional<std::size_t> optic;  // index into World::optics: the first on the way; none: any
     std::optional<Path> path;          // none: reflected by mirrors, refracted by glass
     bool visibility = false;           // leave out images that objects hide
+    bool beyond_film = false;          // keep images beyond the film's edges; with visibility none
 };
 
-/// images[i] gets the images of places[i] that lie on the film, on that way, and carry light; none for a
-/// place that is none. Derivatives are exact where `project` has them, else differences over half a pixel of
-/// the map; zero where not even these are known.
+/// images[i] gets the images of places[i] that lie on the film (or beyond it), on that way, and carry light;
+/// none for a place that is none. Derivatives are exact where `project` has them, else differences over half
+/// a pixel of the map; zero where not even these are known.
 void find_film_images(const World& world, const FilmImagesParams& params,
                       std::span<const std::optional<WorldPlace>> places, std::span<MapImages> images);
 

@@ -27,18 +27,10 @@ FilmMap empty_map(int width, int height, int source_width, int source_height) {
     return map;
 }
 
-/// The image whose derivative has the largest smaller singular value.
-const MapImage& best_of(std::span<const MapImage> images) {
-    const MapImage* best = &images[0];
-    for (const MapImage& image : images)
-        if (singular_values(image.jacobian).least > singular_values(best->jacobian).least) best = &image;
-    return *best;
-}
-
 void fill(const SampledMap& sampled, FilmMap& map) {
     sampled.for_each_pixel([&](int x, int y, std::span<const MapImage> images) {
         if (images.empty()) return;
-        const MapImage& image = best_of(images);
+        const MapImage& image = best_resolved(images);
         const std::size_t at =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x);
         map.x[at] = static_cast<float>(image.position.x);

@@ -97,16 +97,29 @@ std::string pgm_name(const std::string& file, MapAxis axis);
 // that is projected (P. Bourke, "Using a spherical mirror for projection into immersive environments",
 // GRAPHITE 2005; his mesh format, read by SGCT, Celestia, Stellarium's and ffmpeg's spheremirror and others).
 
+/// Where the nodes of a mesh are regular. kFilm: on the film, in columns and rows. kTarget: on the picture:
+/// of a fisheye in rays and rings about its middle (the first and the last ray are one), else in columns and
+/// rows; there cells are small where the optic crowds the picture together, and end where it does.
+enum class WarpGrid { kFilm, kTarget };
+
+template <>
+struct EnumNames<WarpGrid> {
+    static constexpr std::array kTable{NamedValue<WarpGrid>{WarpGrid::kFilm, "film"},
+                                       NamedValue<WarpGrid>{WarpGrid::kTarget, "target"}};
+};
+
 struct WarpNode {
-    Vec2 film{0};           // place on the film, pixels
+    Vec2 film{0};           // place on the film, pixels; kTarget: beyond its edges too
     Vec2 target{0};         // place on the target's picture, in its pixels
     double intensity = -1;  // 0..1; negative: nothing is drawn there
 };
 
 struct WarpMesh {
+    WarpGrid grid = WarpGrid::kFilm;
     int columns = 0, rows = 0;  // nodes
     int film_width = 0, film_height = 0, target_width = 0, target_height = 0;
-    std::vector<WarpNode> nodes;  // rows from the film's top
+    std::vector<WarpNode>
+        nodes;  // row by row: from the film's or the picture's top, or from the middle outward
 
     const WarpNode& at(int x, int y) const {
         return nodes[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -114,23 +127,27 @@ struct WarpMesh {
     }
     std::size_t drawn_count() const;  // nodes with intensity > 0
 
-    /// How far, in target pixels, what is interpolated in the middle of cells lies from exact rays there.
+    /// How far what programs draw in a cell lies from exact rays, whether they interpolate bilinearly or on
+    /// two triangles, whichever the diagonal: over cells whose nodes are all drawn, or some
+    /// 50,000 of them, evenly spread. In pixels of the target;
+    /// of a mesh that is regular there (kTarget) in pixels of the film.
     double error_mean = 0, error_p99 = 0, error_max = 0;
 };
 
 struct WarpMeshParams {
     int columns = 0,
         rows = 0;  // nodes; 0: as many as keep error_p99 at max_error, at most kMostWarpColumns wide
-    double max_error = 0.5;  // target pixels
+    double max_error = 0.5;  // pixels, as WarpMesh::error_p99
+    WarpGrid grid = WarpGrid::kFilm;
 };
 
-inline constexpr int kMostWarpColumns = 1025;
+inline constexpr int kMostWarpColumns = 2049;
 
-/// The mesh of a film whose rays end on a target of directions: request.way is not asked. Nodes lie on the
-/// film's border and evenly between. Intensity is the solid angle that the film's pixel covers, over its 95th
-/// percentile, at most 1, so that the projected picture is even. Nodes that show nothing beside ones that do
-/// go on as their neighbours do, at intensity 0: cells at the optic's rim fade instead of being lost. Throws
-/// as make_film_map.
+/// The mesh of a film whose rays end on a target of directions: request.way is not asked, nor its word of a
+/// mesh that is regular on the target. Nodes lie on the border and evenly between. Intensity is the solid
+/// angle that the film's pixel covers, over its 95th percentile, at most 1, so that the projected picture is
+/// even. Nodes that show nothing beside ones that do go on as their neighbours do, at intensity 0: cells at
+/// the optic's rim fade instead of being lost. Throws as make_film_map.
 WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const WarpMeshParams& params,
                         const Progress& progress = {});
 

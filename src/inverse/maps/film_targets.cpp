@@ -46,25 +46,26 @@ void find_film_targets(const World& world, const FilmTargetsParams& params, cons
                        const Proxy& proxy, std::span<const Vec2> places, std::span<MapImages> images) {
     // Each place, and the four around it.
     constexpr std::array<Vec2, 5> kAround{{{0, 0}, {-kStep, 0}, {kStep, 0}, {0, -kStep}, {0, kStep}}};
+    const std::size_t each = params.with_jacobians ? kAround.size() : 1;
     std::vector<Vec2> asked;
-    asked.reserve(kAround.size() * places.size());
+    asked.reserve(each * places.size());
     for (const Vec2& place : places)
-        for (const Vec2& step : kAround) asked.push_back(place + step);
+        for (std::size_t k = 0; k < each; ++k) asked.push_back(place + kAround[k]);
     const ShotRays shots = shoot_places(world, params.shoot, asked);
     const double period = target.description().kind == TargetKind::kEquirect ? target.description().width : 0;
 
     parallel_for(places.size(), 256, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
             std::array<std::optional<Vec2>, 5> found;
-            for (std::size_t k = 0; k < kAround.size(); ++k) {
-                const ShotRay& shot = shots.rays[kAround.size() * p + k];
+            for (std::size_t k = 0; k < each; ++k) {
+                const ShotRay& shot = shots.rays[each * p + k];
                 if (!shot.followed() || (params.over_optics && shot.event_count == 0)) continue;
                 if (params.optic && shot.event_count > 0 && shots.events_of(shot)[0].optic != *params.optic)
                     continue;
                 found[k] = target_of(shot, target, proxy);
             }
             if (!found[0]) continue;
-            const ShotRay& shot = shots.rays[kAround.size() * p];
+            const ShotRay& shot = shots.rays[each * p];
             MapImage image{*found[0], Mat2(0), shot.weight, history_of(shots, shot)};
             for (int axis = 0; axis < 2; ++axis) {
                 const auto before = static_cast<std::size_t>(1 + 2 * axis);

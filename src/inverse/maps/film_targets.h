@@ -16,6 +16,7 @@ struct FilmTargetsParams {
     ShootRequest shoot;
     std::optional<std::size_t> optic;  // index into World::optics: the first on the way; none: any
     bool over_optics = true;           // places that show no optic have no value; else they have, too
+    bool with_jacobians = true;        // else derivatives are zero, and a place costs a fifth
 };
 
 /// images[i] gets the one place of the target, in its pixels, that film place places[i] shows, none where it

@@ -98,6 +98,14 @@ inline Resolution singular_values(const Mat2& a) {
     return {most > 0 ? std::fabs(determinant) / most : 0, most};
 }
 
+/// Of one image or more, the one whose derivative has the largest smaller singular value.
+inline const MapImage& best_resolved(std::span<const MapImage> images) {
+    const MapImage* best = &images[0];
+    for (const MapImage& image : images)
+        if (singular_values(image.jacobian).least > singular_values(best->jacobian).least) best = &image;
+    return *best;
+}
+
 /// Of a map with this jacobian per pixel, where a pixel's sides are the tangent vectors dx and dy: pixels of
 /// the map's range per unit of length along the tangent plane. Zero where the sides are parallel.
 inline Resolution resolution_of(const Mat2& jacobian, const Vec3& dx, const Vec3& dy) {

@@ -1,57 +1,103 @@
 #include "inverse/maps/film_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "inverse/maps/film_images.h"
 #include "inverse/maps/film_targets.h"
 #include "render/world/world.h"
 
 namespace trilens {
 namespace {
 
-/// What makes nodes: places of one film in, their places on the target out.
+/// Of a fisheye's radius: its outermost ring lies within its circle.
+constexpr double kJustInside = 1 - 1e-9;
+/// Cells whose errors are measured: of more every second, third... is.
+constexpr std::size_t kMostMeasured = 50'000;
+/// Of a fisheye's mesh, so that its cells are about square a third of the way out.
+constexpr double kRingsPerRay = 0.5;
+
+/// What makes nodes: places where a mesh is regular in, their places on the other side out, on the target or
+/// on the film.
 struct MeshMaker {
     const World& world;
     const FilmMapRequest& request;
+    WarpGrid grid;
     Target target;
     Proxy proxy;
-    FilmTargetsParams params;
+    FilmTargetsParams to_target;
+    FilmImagesParams to_film;
 
-    MeshMaker(const World& of, const FilmMapRequest& asked)
+    MeshMaker(const World& of, const FilmMapRequest& asked, WarpGrid regular_on)
         : world(of),
           request(asked),
+          grid(regular_on),
           target(asked.target, of.scene),
           proxy(asked.proxy, of, center_of_directions(of, asked.center, asked.optic)) {
         if (!target.has_directions())
             throw UsageError("a warp mesh is of a picture of directions: fisheye, equirect or cubemap");
-        params.shoot = {asked.frame.camera, asked.word};
-        params.optic = asked.optic;
-        params.over_optics = !of.optics.empty();
+        if (grid == WarpGrid::kTarget && asked.target.kind == TargetKind::kCubemap)
+            throw UsageError("a mesh that is regular on its target is of a fisheye or an equirect");
+        if (grid == WarpGrid::kTarget && asked.word.asks())
+            throw UsageError("a word of events goes with meshes that are regular on the film");
+        to_target.shoot = {asked.frame.camera, asked.word};
+        to_target.optic = asked.optic;
+        to_target.over_optics = !of.optics.empty();
+        to_film = {asked.frame, asked.optic, asked.path, proxy.asks_visibility()};
+        to_film.beyond_film = !to_film.visibility;
     }
 
-    std::vector<MapImages> find(const std::vector<Vec2>& places) const {
+    /// Whether places lie in columns and rows.
+    bool is_straight() const { return is_on_film() || request.target.kind != TargetKind::kFisheye; }
+    bool is_on_film() const { return grid == WarpGrid::kFilm; }
+    /// The side of a node that is regular, and the one that is found.
+    Vec2 WarpNode::*regular() const { return is_on_film() ? &WarpNode::film : &WarpNode::target; }
+    Vec2 WarpNode::*found() const { return is_on_film() ? &WarpNode::target : &WarpNode::film; }
+
+    /// In columns and rows of a mesh, from its first node.
+    Vec2 place(const WarpMesh& mesh, double x, double y) const {
+        const Vec2 share(x / (mesh.columns - 1), y / (mesh.rows - 1));
+        if (is_on_film()) return share * Vec2(mesh.film_width, mesh.film_height);
+        const Vec2 size(mesh.target_width, mesh.target_height);
+        if (is_straight()) return share * size;
+        const double angle = 2 * std::numbers::pi * share.x;
+        return 0.5 * size * (Vec2(1) + kJustInside * share.y * Vec2(std::sin(angle), std::cos(angle)));
+    }
+
+    std::vector<MapImages> find(const std::vector<Vec2>& places, bool with_jacobians) const {
         std::vector<MapImages> found(places.size());
-        find_film_targets(world, params, target, proxy, places, found);
+        FilmTargetsParams asked = to_target;
+        asked.with_jacobians = with_jacobians;
+        if (is_on_film())
+            find_film_targets(world, asked, target, proxy, places, found);
+        else
+            find_film_images(world, to_film, world_places(target, proxy, places), found);
         return found;
     }
 };
 
-Vec2 node_place(const WarpMesh& mesh, double x, double y) {
-    return {x / (mesh.columns - 1) * mesh.film_width, y / (mesh.rows - 1) * mesh.film_height};
+/// Solid angle per film pixel.
+double spread_of(const WarpNode& node, const MapImage& image, const MeshMaker& maker) {
+    const std::optional<TargetPlace> place = maker.target.place(node.target);
+    const double det = std::fabs(glm::determinant(image.jacobian));
+    if (!place || !(det > 0)) return 0;
+    return maker.target.measure(*place) * (maker.is_on_film() ? det : 1 / det);
 }
 
-/// Solid angle per film pixel.
-double spread_of(const MapImage& image, const Target& target) {
-    const std::optional<TargetPlace> place = target.place(image.position);
-    const Mat2& j = image.jacobian;
-    return place ? std::fabs(j[0].x * j[1].y - j[1].x * j[0].y) * target.measure(*place) : 0;
+/// Of several the best resolved.
+const MapImage& image_of_node(const MeshMaker& maker, const MapImages& images) {
+    return maker.is_on_film() ? images[0] : best_resolved(images);
 }
 
 WarpMesh nodes_of(const MeshMaker& maker, int columns, int rows) {
     const Film& film = maker.world.scene.film;
     WarpMesh mesh;
+    mesh.grid = maker.grid;
     mesh.columns = columns;
     mesh.rows = rows;
     mesh.film_width = film.width;
@@ -60,14 +106,16 @@ WarpMesh nodes_of(const MeshMaker& maker, int columns, int rows) {
     mesh.target_height = maker.request.target.height;
     std::vector<Vec2> places;
     for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x) places.push_back(node_place(mesh, x, y));
-    const std::vector<MapImages> found = maker.find(places);
+        for (int x = 0; x < columns; ++x) places.push_back(maker.place(mesh, x, y));
+    const std::vector<MapImages> found = maker.find(places, true);
     std::vector<double> spreads;
     for (std::size_t n = 0; n < places.size(); ++n) {
-        WarpNode node{places[n]};
+        WarpNode node;
+        node.*maker.regular() = places[n];
         if (!found[n].empty()) {
-            node.target = found[n][0].position;
-            node.intensity = spread_of(found[n][0], maker.target);
+            const MapImage& image = image_of_node(maker, found[n]);
+            node.*maker.found() = image.position;
+            node.intensity = spread_of(node, image, maker);
             spreads.push_back(node.intensity);
         }
         mesh.nodes.push_back(node);
@@ -81,42 +129,85 @@ WarpMesh nodes_of(const MeshMaker& maker, int columns, int rows) {
     return mesh;
 }
 
-/// Errors in the middle of cells whose nodes are all drawn; those across a seam of the target (more than half
-/// of it wide) are left out.
-void measure(const MeshMaker& maker, WarpMesh& mesh) {
-    std::vector<Vec2> places, interpolated;
+/// Nodes of a cell, 0 1 above, 2 3 below, in whose mean programs draw the mean of their places on the other
+/// side.
+using Means = std::vector<std::vector<int>>;
+
+/// By place in the cell, where what is linear on two triangles, cut along either diagonal, or bilinear is off
+/// the farthest as long as cells are so small that their maps are of second degree: its middle, and two of
+/// its sides.
+const std::array<Means, 3>& probes() {
+    static const std::array<Means, 3> kProbes{Means{{0, 1, 2, 3}, {0, 3}, {1, 2}}, Means{{0, 1}},
+                                              Means{{0, 2}}};
+    return kProbes;
+}
+
+using Cell = std::array<int, 2>;  // its upper left node
+
+Vec2 mean_of(const WarpMesh& mesh, const Cell& cell, const std::vector<int>& nodes, Vec2 WarpNode::*side) {
+    Vec2 sum(0);
+    for (const int k : nodes) sum += mesh.at(cell[0] + k % 2, cell[1] + k / 2).*side;
+    return sum / double(nodes.size());
+}
+
+/// Upper left nodes of cells whose nodes are all drawn, but for those of the film across a seam of the target
+/// (more than half of it wide).
+std::vector<Cell> whole_cells(const WarpMesh& mesh) {
+    std::vector<Cell> cells;
     for (int y = 0; y + 1 < mesh.rows; ++y)
         for (int x = 0; x + 1 < mesh.columns; ++x) {
-            Vec2 sum(0), low(1e300), high(-1e300);
+            double low = 1e300, high = -1e300;
             bool drawn = true;
             for (int k = 0; k < 4; ++k) {
                 const WarpNode& node = mesh.at(x + k % 2, y + k / 2);
                 drawn = drawn && node.intensity >= 0;
-                sum += node.target;
-                low = glm::min(low, node.target);
-                high = glm::max(high, node.target);
+                low = std::min(low, node.target.x);
+                high = std::max(high, node.target.x);
             }
-            if (!drawn || high.x - low.x > 0.5 * mesh.target_width) continue;
-            places.push_back(node_place(mesh, x + 0.5, y + 0.5));
-            interpolated.push_back(0.25 * sum);
+            const bool is_seam = mesh.grid == WarpGrid::kFilm && high - low > 0.5 * mesh.target_width;
+            if (drawn && !is_seam) cells.push_back({x, y});
         }
-    const std::vector<MapImages> found = maker.find(places);
-    std::vector<double> errors;
-    double sum = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        if (found[i].empty()) continue;
-        errors.push_back(length(found[i][0].position - interpolated[i]));
-        sum += errors.back();
+    return cells;
+}
+
+std::vector<Cell> evenly_spread(const std::vector<Cell>& cells, std::size_t most) {
+    const std::size_t step = std::max<std::size_t>(1, cells.size() / most);
+    std::vector<Cell> some;
+    for (std::size_t i = 0; i < cells.size(); i += step) some.push_back(cells[i]);
+    return some;
+}
+
+/// Errors of whole cells.
+void measure(const MeshMaker& maker, WarpMesh& mesh) {
+    const std::vector<Cell> cells = evenly_spread(whole_cells(mesh), kMostMeasured);
+    std::vector<double> errors(cells.size(), -1);
+    for (const Means& means : probes()) {
+        std::vector<MapImages> found;
+        for (std::size_t m = 0; m < means.size(); ++m) {
+            if (m == 0 || !maker.is_straight()) {  // else all means are of one place
+                std::vector<Vec2> places;
+                for (const Cell& cell : cells)
+                    places.push_back(mean_of(mesh, cell, means[m], maker.regular()));
+                found = maker.find(places, !maker.is_on_film());
+            }
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                if (found[i].empty()) continue;
+                const Vec2 exact = image_of_node(maker, found[i]).position;
+                errors[i] =
+                    std::max(errors[i], length(exact - mean_of(mesh, cells[i], means[m], maker.found())));
+            }
+        }
     }
+    std::erase(errors, -1);
     if (errors.empty()) return;
     std::sort(errors.begin(), errors.end());
-    mesh.error_mean = sum / double(errors.size());
+    mesh.error_mean = std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());
     mesh.error_p99 = errors[static_cast<std::size_t>(0.99 * double(errors.size() - 1))];
     mesh.error_max = errors.back();
 }
 
 /// Nodes that show nothing beside ones that do: the mean of what these and those behind them go on to.
-void extend_rim(WarpMesh& mesh) {
+void extend_rim(WarpMesh& mesh, Vec2 WarpNode::*found) {
     const WarpMesh old = mesh;
     for (int y = 0; y < mesh.rows; ++y)
         for (int x = 0; x < mesh.columns; ++x) {
@@ -130,13 +221,13 @@ void extend_rim(WarpMesh& mesh) {
                         continue;
                     const WarpNode &near = old.at(x + dx, y + dy), &far = old.at(fx, fy);
                     if (near.intensity < 0 || far.intensity < 0) continue;
-                    sum += 2.0 * near.target - far.target;
+                    sum += 2.0 * (near.*found) - far.*found;
                     ++count;
                 }
             if (count == 0) continue;
             WarpNode& node = mesh.nodes[static_cast<std::size_t>(y) * static_cast<std::size_t>(mesh.columns) +
                                         static_cast<std::size_t>(x)];
-            node.target = sum / double(count);
+            node.*found = sum / double(count);
             node.intensity = 0;
         }
 }
@@ -154,8 +245,10 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
     if (!chooses && (params.columns < 2 || params.rows < 2 || params.columns > 8193 || params.rows > 8193))
         throw UsageError("a warp mesh has 2 to 8193 nodes a side");
     if (!(params.max_error > 0)) throw UsageError("the largest error is a positive number of pixels");
-    const MeshMaker maker(world, request);
-    const double aspect = double(world.scene.film.height) / world.scene.film.width;
+    const MeshMaker maker(world, request, params.grid);
+    const double aspect = maker.is_on_film()     ? double(world.scene.film.height) / world.scene.film.width
+                          : !maker.is_straight() ? kRingsPerRay
+                                                 : double(request.target.height) / request.target.width;
     const auto rows_for = [&](int columns) {
         return std::max(2, static_cast<int>((columns - 1) * aspect + 0.5) + 1);
     };
@@ -165,7 +258,7 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
         measure(maker, mesh);
         if (progress.cancelled()) throw Interrupted();
         if (!chooses || mesh.error_p99 <= params.max_error || columns >= kMostWarpColumns) {
-            extend_rim(mesh);
+            extend_rim(mesh, maker.found());
             progress(1);
             return mesh;
         }
