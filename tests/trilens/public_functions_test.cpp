@@ -106,6 +106,7 @@ const std::map<std::string, std::string> kElsewhere{
     {"map_format", "tests/inverse: commands"},
     {"npz_of", "of maps that make_film_map made"},
     {"obj_mesh", "of meshes that make_warp_mesh made"},
+    {"optic_word", "of any wish"},
     {"pair_state_name", "of an enumerator"},
     {"parse_correspondences", "tests/inverse: pairs that are none"},
     {"pdf_of", "of pages that make_anamorph made"},
