@@ -7,7 +7,7 @@ The volume is scenes/volumes/jet.vtk, alone before black. VTK (Debian's python3-
 its own filter and draws it by vtkUnstructuredGridVolumeRayCastMapper with its linear ray integrator, in 8 bits; its
 rays stand half a pixel left of ours, for which its columns are averaged in pairs before they are compared. Times are
 medians: of the whole command, which reads the file; of VTK also of a drawing alone, with all of its set-up done.
-Writes FOLDER/volumes.md.
+Writes FOLDER/volumes.md, and FOLDER/volumes.png: the middles of `trilens render` and of VTK side by side.
 """
 import json
 import os
@@ -134,6 +134,11 @@ def main():
             off = np.abs(ours - theirs)[:, 1:-1]
             unlike = f" {off.mean():.5f} | {off.max():.3f} |"
         lines.append(f"| {name} | {statistics.median(seconds):.3f} |{unlike}")
+    import matplotlib.image
+    picture = module.read_image(folder / "render.exr")
+    middle = slice(size[0] // 4, size[0] * 3 // 4)
+    both = np.concatenate([np.stack([picture[channel] for channel in "RGB"], axis=-1)[:, middle], theirs[:, middle]], axis=1)
+    matplotlib.image.imsave(folder / "volumes.png", np.clip(both, 0, 1) ** (1 / 2.2))
     (folder / "volumes.md").write_text("\n".join(lines) + "\n")
     print("\n".join(lines))
 
