@@ -95,11 +95,11 @@ double fisheye_slope(const std::array<double, 14>& k, double angle) {
     return 1 + a2 * (3 * k[0] + a2 * (5 * k[1] + a2 * (7 * k[2] + a2 * 9 * k[3])));
 }
 
-std::optional<Vec3> unproject_fisheye(const OpencvLens& lens, const Vec2& q) {
+std::optional<Vec3> unproject_fisheye(const OpencvLens& lens, const Vec2& q, double end) {
     const std::array<double, 14> k = coefficients(lens);
     const double distance = length(q);
     if (!(distance > 0)) return Vec3(0, 0, 1);
-    double low = 0, high = opencv_fisheye_end(lens);
+    double low = 0, high = end;
     if (distance > fisheye_distance(k, high)) return std::nullopt;
     double angle = std::min(distance, high);
     for (int step = 0; step < 200 && high - low > 0; ++step) {
@@ -144,9 +144,9 @@ std::optional<Vec2> opencv_project(const OpencvLens& lens, const Vec3& direction
     return Vec2(lens.fx * q.x + lens.cx, lens.fy * q.y + lens.cy);
 }
 
-std::optional<Vec3> opencv_unproject(const OpencvLens& lens, const Vec2& at) {
+std::optional<Vec3> opencv_unproject(const OpencvLens& lens, const Vec2& at, double fisheye_end) {
     const Vec2 q((at.x - lens.cx) / lens.fx, (at.y - lens.cy) / lens.fy);
-    return lens.fisheye ? unproject_fisheye(lens, q) : unproject_pinhole(lens, q);
+    return lens.fisheye ? unproject_fisheye(lens, q, fisheye_end) : unproject_pinhole(lens, q);
 }
 
 // A calibrated camera: OpenCV's lens before a film.
@@ -160,11 +160,11 @@ class Opencv final : public CameraModel {
     Opencv(const OpencvLens& lens, const ModelSource& source)
         : eye_(source.from.eye), axes_(source.axes()), lens_(lens), focus_(source.focus()) {
         check_numbers(source);
-        check_film(source);
         end_ = lens_.fisheye ? opencv_fisheye_end(lens_) : 0;
+        check_film(source);
     }
     std::optional<Ray> ray(const Vec2& at) const override {
-        const std::optional<Vec3> local = opencv_unproject(lens_, at);
+        const std::optional<Vec3> local = opencv_unproject(lens_, at, end_);
         if (!local) return std::nullopt;
         return Ray{eye_, axes_.to_world({local->x, -local->y, local->z})};
     }
@@ -183,7 +183,7 @@ class Opencv final : public CameraModel {
 
   private:
     bool is_own(const Vec3& local, const Vec2& pixel) const {
-        const std::optional<Vec3> back = opencv_unproject(lens_, pixel);
+        const std::optional<Vec3> back = opencv_unproject(lens_, pixel, end_);
         if (!back) return false;
         const Vec2 there(local.x / local.z, local.y / local.z);
         return length(Vec2(back->x, back->y) - there) <= 1e-6 * (1 + length(there));
@@ -207,11 +207,11 @@ class Opencv final : public CameraModel {
             if (!std::isfinite(value)) source.site.reject("distortion", "is not finite");
     }
     void check_film(const ModelSource& source) const {
-        const bool whole = lens_.fisheye && opencv_fisheye_end(lens_) >= 3.14159;  // beyond it lies nothing
+        const bool whole = lens_.fisheye && end_ >= 3.14159;  // beyond it lies nothing
         for (int j = 0; j <= kChecked; ++j)
             for (int i = 0; i <= kChecked; ++i) {
                 const Vec2 at(source.film.width * i / kChecked, source.film.height * j / kChecked);
-                if (whole || opencv_unproject(lens_, at)) continue;
+                if (whole || opencv_unproject(lens_, at, end_)) continue;
                 source.site.reject(
                     "distortion",
                     fmt::format("the lens is not one-to-one in the film: no direction is shown at pixel "

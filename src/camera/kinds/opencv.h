@@ -17,7 +17,8 @@ std::optional<Vec2> opencv_project(const OpencvLens& lens, const Vec3& direction
 /// The direction (pinhole: z = 1; fisheye: unit) that the lens shows at a film place; none where the lens has
 /// none there, because it is not one-to-one on the way from the middle (or its fisheye circle ends before).
 /// Newton's method along the way from the principal point, so that the branch is the one of the middle.
-std::optional<Vec3> opencv_unproject(const OpencvLens& lens, const Vec2& at);
+/// `fisheye_end`: a fisheye's opencv_fisheye_end, which takes too long to find for every place.
+std::optional<Vec3> opencv_unproject(const OpencvLens& lens, const Vec2& at, double fisheye_end);
 
 /// The angle from the axis up to which the fisheye's distance from the middle grows; at most pi.
 double opencv_fisheye_end(const OpencvLens& lens);
