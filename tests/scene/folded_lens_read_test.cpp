@@ -177,6 +177,30 @@ TEST_CASE("Q-type aspheres of JSON are normalised by their own radius, or by the
     CHECK(departs_along_normal(mild));
 }
 
+TEST_CASE("a scene has a telescope's mirrors as bodies of chrome, and says which holes it leaves out",
+          "[scene][lens]") {
+    const Scene scene =
+        load_text(R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -9], "at": [0, 0, 0]}}],
+        "lenses": [{"name": "t", "surfaces": [
+            {"radius": -60, "conic": -1, "aperture": 5, "thickness": -20, "mirror": true, "hole": 1, "stop": true},
+            {"aperture": 2, "thickness": 10, "mirror": true, "tilt": [45, 0, 0], "axisBehind": "bends"},
+            {"radius": 9, "aperture": 1, "hole": 0.5, "thickness": 1, "glass": "N-BK7"}, {"aperture": 1}]}]})");
+    REQUIRE(scene.meshes.size() == 3);
+    CHECK(scene.materials[scene.meshes[0].material].name == "t/mirror");
+    const auto& primary = std::get<LensPrimitive>(scene.meshes[0].primitive->kind);
+    CHECK(primary.hole == 1);
+    CHECK(primary.thickness == 1.25);
+    const Primitive& flat = *scene.meshes[1].primitive;
+    CHECK(length(flat.axis - normalize(Vec3(0, -1, 1))) < 1e-15);
+    // Light comes against its axis: what reflects is its back, and lies at the vertex.
+    CHECK(length(flat.center + std::get<LensPrimitive>(flat.kind).thickness * flat.axis - Vec3(0, 0, -20)) <
+          1e-14);
+    CHECK(length(scene.meshes[2].primitive->center - Vec3(0, -10, -20)) < 1e-13);
+    REQUIRE(scene.warnings.size() == 1);
+    CHECK(scene.warnings[0] ==
+          "room.json: /lenses/0/surfaces/2: its hole is not drawn: only mirrors have holes");
+}
+
 TEST_CASE("words of lens files that cannot be followed are refused with their line",
           "[scene][lens][bad-input]") {
     const auto code_v = [](const std::string& words) {

@@ -158,6 +158,14 @@ void expand_lenses(Json& scene, Reading& reading) {
             if (node.has("surfaces")) throw;
             node["file"].fail(error.what());
         }
+        for (const LensRow& row : lens.prescription.rows)
+            if (row.hole > 0 && !row.mirror) {
+                const std::string what = "its hole is not drawn: only mirrors have holes";
+                if (node.has("surfaces"))
+                    reading.warn(row.place, what);
+                else
+                    reading.warn(node["file"].place, row.place + ": " + what);
+            }
         if (!expansion.add_stop()) reading.warn(node.place, "its stop lies on glass: no ring is made of it");
     }
 }
