@@ -326,8 +326,7 @@ void bind_design(py::module_& module) {
             },
             py::arg("file"), py::arg("thickness") = 0.0,
             "A closed body, binary STL; thickness: of a mirror behind its lowest point, 0: a twentieth of "
-            "its "
-            "longer side.")
+            "its longer side.")
         .def(
             "save_obj",
             [](const PythonDesign& self, const std::filesystem::path& file) {
@@ -363,9 +362,8 @@ void bind_design(py::module_& module) {
         py::arg("wish"), py::arg("target") = py::none(), py::kw_only(), py::arg("directions") = false,
         py::arg("compare_sphere") = false, py::arg("method") = "gauss-newton", py::arg("max_iterations") = 20,
         py::arg("progress") = py::none(),
-        "The freeform mirror whose reflections come nearest to a wish, or where the wish has \"lens\" the "
-        "front of a "
-        "lens.\n\n"
+        "The freeform mirror whose reflections come nearest to a wish, or where the wish has \"lens\" the\n"
+        "front of a lens.\n\n"
         "wish: a wish file, or a dict of the same form (wish_schema).\n"
         "target: (rows, columns, 3) instead of the dict's \"wish\": what is to be seen over the mirror as "
         "the eye\n"

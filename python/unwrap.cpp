@@ -292,10 +292,10 @@ void bind_map(RendererClass& renderer) {
         "A warp mesh: the film of a projector as a grid of quadrilaterals, with their places in the picture\n"
         "that is projected.\n\n"
         "to: the picture, of directions: \"fisheye:N\" or \"equirect:WxH\".\n"
-        "center, proxy, optic, word: as in map.\n"
-        "grid: where the mesh is regular: \"film\", or \"target\": a fisheye in rays and rings, an equirect "
-        "in\n"
-        "  columns and rows, so that cells are small at an optic's rim; then `path` says how, as in unwrap.\n"
+        "center, proxy, optic: as in map.\n"
+        "grid: where the mesh is regular: \"film\", where `word` says how rays go, as in map; or\n"
+        "  \"target\", where `path` does, as in unwrap: a fisheye in rays and rings, an equirect in\n"
+        "  columns and rows, so that cells are small at an optic's rim.\n"
         "columns, rows: nodes; both 0: as many as keep 99 % of the cells within max_error pixels (of the\n"
         "  target; with grid \"target\" of the film).\n"
         "file: written too: .data (Bourke's format) or .obj.\n"
@@ -304,8 +304,8 @@ void bind_map(RendererClass& renderer) {
         "and intensity, 0..1, negative where nothing is drawn; error_mean, error_p99, error_max: how far "
         "off\n"
         "what programs interpolate in cells is, bilinearly or on two triangles, in the same pixels.\n"
-        "Raises UsageError for what the scene does not have, InputError where the film shows nothing, "
-        "OutputError.");
+        "Raises UsageError for what the scene does not have, and a word or a path with the other grid,\n"
+        "InputError where the film shows nothing, OutputError.");
 }
 
 std::shared_ptr<const Texture> picture_of(const Photo& given) {

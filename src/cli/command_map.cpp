@@ -136,9 +136,9 @@ Command map_command() {
            .value = "NxM|auto"},
           {.names = "--grid",
            .target = &options->grid,
-           .help = "where a mesh is regular: on the film, or on the target (a fisheye in rays and rings), "
-                   "which needs "
-                   "fewer nodes at an optic's rim",
+           .help =
+               "where a mesh is regular: on the film, or on the target (a fisheye in rays and rings), which "
+               "needs fewer nodes at an optic's rim; --word goes with the first, --path with the other",
            .choices = {"film", "target"}},
           {.names = "--max-error",
            .target = &options->max_error,

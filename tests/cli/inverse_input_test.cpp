@@ -39,6 +39,8 @@ TEST_CASE("unwrap, map and anamorph say what they cannot use, and leave nothing 
              {"unwrap " + scene + " " + photo + " --to equirect:64x32 -o " + photo, 2, "p.exr"},
              {"map " + scene + " --to equirect:64x32 -o " + folder + "/o.tif", 2, "Bourke"},
              {"map " + scene + " --to equirect:64x32 --mesh 3 -o " + folder + "/o.data", 2, "--mesh"},
+             {"map " + scene + " --to equirect:64x32 --path reflect -o " + folder + "/o.data", 2,
+              "a path goes"},
              {"map " + scene + " --to equirect:64x32 --word X -o " + folder + "/o.exr", 2, "X"},
              {anamorph + "--page page --unit furlong", 2, "furlong"},
              {anamorph + "--page mirror", 3, "optic"},

@@ -98,6 +98,10 @@ def test_a_warp_mesh_and_an_anamorphosis(tmp_path):
     lines = (tmp_path / "warp.data").read_text().split("\n")
     assert lines[:2] == ["2", "33 19"] and len(lines) == 2 + 33 * 19 + 1
     rings = dome.warp_mesh("fisheye:512", 65, 17, proxy="sphere:3", center=(0, 0, 0), grid="target")
+    assert np.array_equal(rings["nodes"][:, 0, [0, 1, 4]], rings["nodes"][:, -1, [0, 1, 4]])
+    for grid, way in (("film", {"path": "reflect"}), ("target", {"word": "R"})):
+        with pytest.raises(trilens.UsageError, match="regular on"):
+            dome.warp_mesh("fisheye:512", 33, 19, proxy="sphere:3", center=(0, 0, 0), grid=grid, **way)
     radius = np.hypot(*(rings["nodes"][..., 2:4] - 256).transpose(2, 0, 1))
     assert np.allclose(radius, 256 * np.linspace(0, 1, 17)[:, None]) and rings["error_p99"] < 20
 

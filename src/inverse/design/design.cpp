@@ -136,11 +136,10 @@ class HeightSolver {
     NormalEquations equations_;
 };
 
-[[noreturn]] void fail_at_place(const DesignWish& wish, const Vec2& at) {
+[[noreturn]] void fail_at_place(const DesignWish& wish, const Vec2& at, const char* why) {
     throw ComputationError(
-        fmt::format("no {} sends the eye's ray at ({:.4g}, {:.4g}) of the rectangle as wished: the "
-                    "normal would lie in it",
-                    optic_word(wish), at.x, at.y));
+        fmt::format("no {} sends the eye's ray at ({:.4g}, {:.4g}) of the rectangle as wished: {}",
+                    optic_word(wish), at.x, at.y, why));
 }
 
 /// Takes the solver's heights; their largest change.
@@ -165,7 +164,7 @@ double picard_step(const DesignWish& wish, const WishedRays& rays, std::span<con
     for (const Vec2& at : samples) {
         const HeightBasis basis = field.basis(at);
         const NeededSlopes needed = needed_slopes(rays, Vec3(at, field.height(at).z));
-        if (!needed.is_possible) fail_at_place(wish, at);
+        if (needed.refusal) fail_at_place(wish, at, needed.refusal);
         solver.add(basis, basis.x, needed.slopes.x, weight);
         solver.add(basis, basis.y, needed.slopes.y, weight);
     }

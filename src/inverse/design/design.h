@@ -144,9 +144,12 @@ class WishedRays {
     Vec3 wanted(const Vec3& place, const Vec3& from) const;
     /// The same of a mirror, which it leaves at that place.
     Vec3 wanted(const Vec3& place) const { return wanted(place, place); }
+    /// The point that the eye is to see at that place, rectangle's frame; none: the wish has directions.
+    std::optional<Vec3> wanted_point(const Vec3& place) const;
 
   private:
     Vec3 value(const Vec2& st) const;
+    Vec3 value_at(const Vec3& place) const;
 
     DesignWish wish_;
     PatchFrame frame_;
@@ -188,8 +191,8 @@ struct Design {
     DesignErrors errors;
     std::optional<BestSphere> sphere;
     /// Rms of (p_y + p_z q) - (q_x + q_z p), with p, q the slopes that the wish needs at (x, y, z): 1 /
-    /// length. 0 where a mirror can do what is wished. Over the flat rectangle, and on the mirror that was
-    /// found.
+    /// length. 0 where a mirror or a lens can do what is wished. Over the flat rectangle, and on the surface
+    /// that was found.
     double curl_flat = 0, curl = 0;
     double sag = 0;              // highest minus lowest point over the rectangle
     double smallest_radius = 0;  // of curvature; infinite: flat
@@ -221,7 +224,7 @@ std::string design_scene(const DesignWish& wish, const Design& design);
 /// A closed body, binary STL: the mirror in front, a plane back `thickness` behind its lowest point; of a
 /// lens its own back.
 std::string design_stl(const Design& design, double thickness, int steps = 160);
-/// The mirror alone, Wavefront OBJ, with normals.
+/// The designed surface alone (the mirror, or the front of the lens), Wavefront OBJ, with normals.
 std::string design_obj(const Design& design, int steps = 160);
 /// A table "x,y,z,nx,ny,nz", normals unit.
 std::string design_sag_table(const Design& design, int steps = 40);

@@ -1,4 +1,4 @@
-// A designed mirror as a scene and as the files of those who make it.
+// A designed mirror or lens as a scene and as the files of those who make it.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSquares = 12;  // across a wished plane
 constexpr int kFilmWidth = 640;
-constexpr double kPictureMargin = 1.15;  // of the mirror in its eye's picture
+constexpr double kPictureMargin = 1.15;  // of the mirror or lens in its eye's picture
 
 Json triple_json(const Vec3& v) {
     return Json::array({v.x, v.y, v.z});

@@ -120,24 +120,45 @@ std::vector<Vec2> patch_samples(const Vec2& size, const std::array<int, 2>& coun
 
 namespace {
 
-/// The wished direction as it is in the glass before it leaves the plane back, from a place of the front:
-/// where it leaves depends on it, so that it is found again and again. None where that does not come to rest,
-/// as for points near the back, and where the wish is not behind the lens.
-std::optional<Vec3> wished_in_glass(const WishedRays& wish, const Vec3& place) {
-    constexpr int kMostSteps = 100;
-    const DesignLens& lens = *wish.lens();
-    Vec3 in_glass = normalize(place - wish.eye());
-    for (int k = 0; k < kMostSteps; ++k) {
-        const Vec3 from = place - (lens.thickness + place.z) / in_glass.z * in_glass;
-        const Vec3 wanted = wish.wanted(place, from);
-        if (!(wanted.z < -1e-6)) return std::nullopt;
-        const Vec2 across = Vec2(wanted) / lens.ior;
-        const Vec3 next(across, -std::sqrt(1 - dot(across, across)));
-        const double moved = length(next - in_glass);
-        in_glass = next;
-        if (moved < 1e-15) return in_glass;
+/// How far beside a place `depth` above a plane light leaves glass there for a point `across` beside that
+/// place and `beyond` behind the plane. The time that it takes is convex (Fermat), so that n sin - sin, its
+/// slope, has one root: Newton's, halved where it slows down.
+double exit_distance(double ior, double across, double depth, double beyond) {
+    double low = 0, high = across, at = across * depth / (depth + beyond), last = across;
+    while (high > low) {
+        const double to_place = std::hypot(at, depth), to_point = std::hypot(across - at, beyond);
+        const double slope = ior * at / to_place - (across - at) / to_point;
+        const double bend = ior * depth * depth / (to_place * to_place * to_place) +
+                            beyond * beyond / (to_point * to_point * to_point);
+        (slope < 0 ? low : high) = at;
+        double step = -slope / bend;
+        if (!(at + step > low && at + step < high) || std::abs(step) > last / 2) step = (low + high) / 2 - at;
+        last = std::abs(step);
+        if (at + step == at || last < 1e-17 * across) break;
+        at += step;
     }
-    return std::nullopt;
+    return at;
+}
+
+/// The wished direction as it is in the glass before it leaves the plane back, from a place of the front;
+/// from one behind the back, as of surfaces on their way, it leaves at once. None where what is wished is not
+/// behind the back.
+std::optional<Vec3> wished_in_glass(const WishedRays& wish, const Vec3& place) {
+    constexpr double kLeastDescent = 1e-6;  // of unit directions
+    const DesignLens& lens = *wish.lens();
+    const std::optional<Vec3> point = wish.wanted_point(place);
+    const double depth = lens.thickness + place.z;
+    if (point && depth > 0) {
+        const Vec2 to_point = Vec2(*point) - Vec2(place);
+        const double across = length(to_point), beyond = -lens.thickness - point->z;
+        if (!(beyond > kLeastDescent * length(*point - place))) return std::nullopt;
+        if (across == 0) return Vec3(0, 0, -1);
+        return normalize(Vec3(exit_distance(lens.ior, across, depth, beyond) / across * to_point, -depth));
+    }
+    const Vec3 wanted = wish.wanted(place);
+    if (!(wanted.z < -kLeastDescent)) return std::nullopt;
+    const Vec2 across = Vec2(wanted) / lens.ior;
+    return Vec3(across, -std::sqrt(1 - dot(across, across)));
 }
 
 RayRows mirror_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale) {
@@ -178,12 +199,16 @@ RayRows lens_rows(const WishedRays& wish, const Vec2& at, const Height& h, doubl
 NeededSlopes needed_slopes(const WishedRays& wish, const Vec3& place) {
     const Vec3 to_eye = normalize(wish.eye() - place);
     Vec3 normal(0);
-    if (!wish.lens())
+    if (!wish.lens()) {
         normal = to_eye + wish.wanted(place);
-    else if (const std::optional<Vec3> in_glass = wished_in_glass(wish, place))
+    } else {
+        const std::optional<Vec3> in_glass = wished_in_glass(wish, place);
+        if (!in_glass) return {Vec2(0), "what is wished does not lie behind its back"};
         normal = -to_eye - wish.lens()->ior * *in_glass;
-    if (!(normal.z > 1e-6) || !(dot(normal, to_eye) > 0)) return {Vec2(0), false};
-    return {Vec2(-normal.x, -normal.y) / normal.z, true};
+    }
+    if (!(normal.z > 1e-6) || !(dot(normal, to_eye) > 0))
+        return {Vec2(0), wish.lens() ? "no front turns the eye's ray so far" : "the wished ray goes into it"};
+    return {Vec2(-normal.x, -normal.y) / normal.z, nullptr};
 }
 
 Ray leaving_ray(const WishedRays& wish, const Vec2& at, const Height& h) {

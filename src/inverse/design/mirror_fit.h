@@ -28,10 +28,12 @@ std::vector<Vec2> patch_samples(const Vec2& size, const std::array<int, 2>& coun
 
 /// Slopes dz/dx, dz/dy for which the eye's ray at a place leaves in the wished direction. Of a mirror the
 /// normal halves the angle of both; of a lens it is along their difference, times the index, in the glass
-/// (Snell). Not possible where the z of that normal is 0 or less.
+/// (Snell), which takes the one quickest way through the plane back to a wished point (Fermat), however near.
 struct NeededSlopes {
     Vec2 slopes{0};
-    bool is_possible = true;
+    /// null: none. What is wished does not lie behind a lens' back; or the z of that normal, or its cosine
+    /// with the eye's ray, is 0 or less. Goes on from "of the mirror", "of the lens".
+    const char* refusal = nullptr;
 };
 NeededSlopes needed_slopes(const WishedRays& wish, const Vec3& place);
 

@@ -101,20 +101,28 @@ Vec3 WishedRays::value(const Vec2& st) const {
     return Vec3(0);
 }
 
-Vec3 WishedRays::wanted(const Vec3& place, const Vec3& from) const {
+Vec3 WishedRays::value_at(const Vec3& place) const {
     // Where the eye's ray to the place crosses the plane through the middle at right angles to the view.
     const Vec3 ray = place - eye_, look = -normalize(eye_);
     const Vec3 right = normalize(Vec3(1, 0, 0) - look.x * look), up = cross(right, look);
     const Vec3 on = eye_ + length(eye_) / dot(ray, look) * ray;
-    const Vec2 st = Vec2(dot(on, right) / (wish_.patch.size.x * right.x),
-                         dot(on, up) / (wish_.patch.size.y * std::abs(up.y))) +
-                    Vec2(0.5);
-    const Vec3 wanted = value(st);
+    return value(Vec2(dot(on, right) / (wish_.patch.size.x * right.x),
+                      dot(on, up) / (wish_.patch.size.y * std::abs(up.y))) +
+                 Vec2(0.5));
+}
+
+std::optional<Vec3> WishedRays::wanted_point(const Vec3& place) const {
     const WishMap& map = wish_.wish;
-    if (map.type == WishType::kEquirectangular) return wanted;
-    if (map.type == WishType::kMap && map.is_directions)
-        return normalize(glm::transpose(frame_.world_from_patch) * wanted);
-    return normalize(frame_.to_patch(wanted) - from);
+    if (map.type == WishType::kEquirectangular || (map.type == WishType::kMap && map.is_directions))
+        return std::nullopt;
+    return frame_.to_patch(value_at(place));
+}
+
+Vec3 WishedRays::wanted(const Vec3& place, const Vec3& from) const {
+    if (const std::optional<Vec3> point = wanted_point(place)) return normalize(*point - from);
+    const Vec3 direction = value_at(place);
+    if (wish_.wish.type == WishType::kEquirectangular) return direction;
+    return normalize(glm::transpose(frame_.world_from_patch) * direction);
 }
 
 void check_wish(const DesignWish& wish, const std::string& name) {
@@ -137,10 +145,10 @@ void check_wish(const DesignWish& wish, const std::string& name) {
     for (const double s : {0.0, 0.5, 1.0})
         for (const double t : {0.0, 0.5, 1.0}) {
             const Vec3 place((s - 0.5) * wish.patch.size.x, (t - 0.5) * wish.patch.size.y, 0);
-            if (needed_slopes(rays, place).is_possible) continue;
-            const char* why = wish.lens ? "at ({}, {}) of the lens no light leaves its back as wished"
-                                        : "at ({}, {}) of the mirror the wished ray goes into it";
-            refuse_wish(name, "/wish", fmt::format(fmt::runtime(why), s, t));
+            const char* why = needed_slopes(rays, place).refusal;
+            if (why)
+                refuse_wish(name, "/wish",
+                            fmt::format("at ({}, {}) of the {} {}", s, t, optic_word(wish), why));
         }
 }
 

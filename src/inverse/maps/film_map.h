@@ -143,11 +143,12 @@ struct WarpMeshParams {
 
 inline constexpr int kMostWarpColumns = 2049;
 
-/// The mesh of a film whose rays end on a target of directions: request.way is not asked, nor its word of a
-/// mesh that is regular on the target. Nodes lie on the border and evenly between. Intensity is the solid
-/// angle that the film's pixel covers, over its 95th percentile, at most 1, so that the projected picture is
-/// even. Nodes that show nothing beside ones that do go on as their neighbours do, at intensity 0: cells at
-/// the optic's rim fade instead of being lost. Throws as make_film_map.
+/// The mesh of a film whose rays end on a target of directions; request.way is not asked. Nodes lie on the
+/// border and evenly between. Intensity is the solid angle that the film's pixel covers, over its 95th
+/// percentile, at most 1, so that the projected picture is even. Nodes that show nothing beside ones that do
+/// go on as their neighbours do, at intensity 0: cells at the optic's rim fade instead of being lost. Throws
+/// as make_film_map, and UsageError for request.path with a mesh that is regular on the film, whose rays go
+/// as request.word says, and for that word with one that is regular on the target.
 WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const WarpMeshParams& params,
                         const Progress& progress = {});
 

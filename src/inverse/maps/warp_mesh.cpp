@@ -45,6 +45,8 @@ struct MeshMaker {
             throw UsageError("a mesh that is regular on its target is of a fisheye or an equirect");
         if (grid == WarpGrid::kTarget && asked.word.asks())
             throw UsageError("a word of events goes with meshes that are regular on the film");
+        if (grid == WarpGrid::kFilm && asked.path)
+            throw UsageError("a path goes with meshes that are regular on their target; else, a word");
         to_target.shoot = {asked.frame.camera, asked.word};
         to_target.optic = asked.optic;
         to_target.over_optics = !of.optics.empty();
@@ -80,6 +82,17 @@ struct MeshMaker {
         return found;
     }
 };
+
+/// Of a mesh that is regular on its target the first and the last column are one, and the mesh goes round.
+void join_seam(WarpMesh& mesh, Vec2 WarpNode::*found) {
+    if (mesh.grid == WarpGrid::kFilm) return;
+    const auto columns = static_cast<std::size_t>(mesh.columns);
+    for (std::size_t first = 0; first < mesh.nodes.size(); first += columns) {
+        WarpNode& last = mesh.nodes[first + columns - 1];
+        last.*found = mesh.nodes[first].*found;
+        last.intensity = mesh.nodes[first].intensity;
+    }
+}
 
 /// Solid angle per film pixel.
 double spread_of(const WarpNode& node, const MapImage& image, const MeshMaker& maker) {
@@ -126,6 +139,7 @@ WarpMesh nodes_of(const MeshMaker& maker, int columns, int rows) {
     std::nth_element(spreads.begin(), p95, spreads.end());
     for (WarpNode& node : mesh.nodes)
         if (node.intensity >= 0) node.intensity = *p95 > 0 ? std::min(1.0, node.intensity / *p95) : 1;
+    join_seam(mesh, maker.found());
     return mesh;
 }
 
@@ -209,6 +223,10 @@ void measure(const MeshMaker& maker, WarpMesh& mesh) {
 /// Nodes that show nothing beside ones that do: the mean of what these and those behind them go on to.
 void extend_rim(WarpMesh& mesh, Vec2 WarpNode::*found) {
     const WarpMesh old = mesh;
+    const int around = mesh.columns - 1;
+    const auto column = [&](int x) {  // its own: beyond the film's, none
+        return mesh.grid == WarpGrid::kFilm ? x : (x + 2 * around) % around;
+    };
     for (int y = 0; y < mesh.rows; ++y)
         for (int x = 0; x < mesh.columns; ++x) {
             if (old.at(x, y).intensity >= 0) continue;
@@ -216,10 +234,10 @@ void extend_rim(WarpMesh& mesh, Vec2 WarpNode::*found) {
             int count = 0;
             for (int dy = -1; dy <= 1; ++dy)
                 for (int dx = -1; dx <= 1; ++dx) {
-                    const int fx = x + 2 * dx, fy = y + 2 * dy;
+                    const int nx = column(x + dx), fx = column(x + 2 * dx), fy = y + 2 * dy;
                     if ((dx == 0 && dy == 0) || fx < 0 || fy < 0 || fx >= mesh.columns || fy >= mesh.rows)
                         continue;
-                    const WarpNode &near = old.at(x + dx, y + dy), &far = old.at(fx, fy);
+                    const WarpNode &near = old.at(nx, y + dy), &far = old.at(fx, fy);
                     if (near.intensity < 0 || far.intensity < 0) continue;
                     sum += 2.0 * (near.*found) - far.*found;
                     ++count;
