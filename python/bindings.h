@@ -122,6 +122,9 @@ void bind_unwrap(RendererClass& renderer, py::module_& module);  // unwrap, map,
 
 // What several subjects need of scenes.
 
+/// As JSON, numpy's arrays and numbers, too; numbers that are not finite are refused.
+std::string json_text(const py::object& value, const py::object& indent = py::none());
+
 /// {"/json/pointer": value} as the library takes it; texts stay texts.
 std::vector<SceneOverride> overrides_of(const py::dict& overrides);
 

@@ -20,12 +20,16 @@ py::object plain_value(const py::object& value) {
                          " is not JSON serializable");
 }
 
-std::string json_text(const py::object& value, const py::object& indent = py::none()) {
+}  // namespace
+
+std::string json_text(const py::object& value, const py::object& indent) {
     return py::module_::import("json")
         .attr("dumps")(value, py::arg("indent") = indent, py::arg("allow_nan") = false,
                        py::arg("default") = py::cpp_function(plain_value))
         .cast<std::string>();
 }
+
+namespace {
 
 py::object json_value(const std::string& text) {
     return py::module_::import("json").attr("loads")(text);

@@ -3,6 +3,8 @@
 
 #include <pybind11/stl.h>
 
+#include <variant>
+
 #include "python_call.h"
 
 namespace trilens::python {
@@ -92,8 +94,14 @@ struct Lengths {
     LensPrimitive lens;
 };
 
-/// (radius, aperture, conic, coefficients of r^2, r^4, ...), the last two may be left out.
-LensSide lens_side(const std::vector<double>& numbers, const char* name) {
+/// (radius, aperture, conic, coefficients of r^2, r^4, ...), the last two may be left out; or as scenes have
+/// it.
+using Side = std::variant<py::dict, std::vector<double>>;
+
+LensSide lens_side(const Side& given, const char* name) {
+    if (const auto* const keys = std::get_if<py::dict>(&given))
+        return parse_lens_side(json_text(*keys), name);
+    const auto& numbers = std::get<std::vector<double>>(given);
     if (numbers.size() < 2 || numbers.size() > 3 + kAsphereTerms)
         throw UsageError(std::string(name) + " is (radius, aperture), then conic and up to " +
                          std::to_string(kAsphereTerms) + " coefficients");
@@ -185,7 +193,7 @@ void bind_surface_makers(py::module_& module) {
         "primitive_surface",
         [](const std::string& type, const Triple& center, const Triple& axis, const Triple& tangent,
            double radius, double focal_length, double height, const std::array<double, 2>& size,
-           double thickness, const std::vector<double>& front, const std::vector<double>& back, double hole) {
+           double thickness, const Side& front, const Side& back, double hole) {
             const LensPrimitive lens{thickness, lens_side(front, "front"), lens_side(back, "back"), hole};
             const Lengths lengths{radius, focal_length, height, {size[0], size[1]}, lens};
             return SurfacePointer(
@@ -210,9 +218,12 @@ void bind_surface_makers(py::module_& module) {
         "height: the cylinder's or the cone's. size: the plane's sides. thickness, front, back: the lens', "
         "whose\n"
         "center is its front's vertex; a side is (radius, aperture, conic, coefficients of r^2, r^4, ...), "
-        "radius 0 flat.\n"
+        "radius 0 flat,\n"
+        "or a dict with the keys of scenes: radius, aperture, conic, coefficients, normalDepartures, qcon, "
+        "qbfs,\n"
+        "normalizationRadius.\n"
         "hole: radius of a hole along the lens' axis.\n"
-        "Raises InputError for sizes that are not positive.");
+        "Raises InputError for sizes that are not positive and for dicts that are no sides.");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ _Triple = Sequence[float]
 _Point = Tuple[float, float, float]
 _Window = Sequence[int]
 _Overrides = Mapping[str, Any]
+_Side = Union[Sequence[float], "dict[str, Any]"]
 _Progress = Union[None, bool, Callable[[float, str], Any]]
 _Warn = Optional[Callable[[str], Any]]
 
@@ -802,8 +803,8 @@ def primitive_surface(
     height: float = 2.0,
     size: Sequence[float] = (2.0, 2.0),
     thickness: float = 0.5,
-    front: Sequence[float] = (0.0, 1.0),
-    back: Sequence[float] = (0.0, 1.0),
+    front: _Side = (0.0, 1.0),
+    back: _Side = (0.0, 1.0),
     hole: float = 0.0,
 ) -> Surface: ...
 

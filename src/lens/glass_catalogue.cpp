@@ -1,5 +1,6 @@
 // Schott's glasses, those of the catalogue of 2018 and older ones that prescriptions name, by what the data
 // sheets say: n_d, V_d.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -73,6 +74,12 @@ constexpr KnownGlass kGlasses[] = {
 };
 // clang-format on
 
+bool is_same_name(std::string_view a, std::string_view b) {
+    const auto capital = [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](char one, char other) { return capital(one) == capital(other); });
+}
+
 /// The number that the digits are behind so many of them; none where there are others than digits.
 std::optional<double> fraction_of(std::string_view digits, int before_point) {
     long long number = 0;
@@ -101,10 +108,13 @@ std::optional<Glass> glass_of_code(const std::string& name) {
 
 Glass find_glass(const std::string& name, const std::string& file, const std::string& place,
                  std::span<const Glass> more) {
-    for (const Glass& glass : more)
-        if (name == glass.name) return glass;
+    for (const Glass& glass : more) {
+        if (!is_same_name(name, glass.name)) continue;
+        if (!glass.fault.empty()) throw InputError(file, place, glass.fault);
+        return glass;
+    }
     for (const KnownGlass& glass : kGlasses)
-        if (name == glass.name) return {glass.name, glass.index, glass.abbe};
+        if (is_same_name(name, glass.name)) return {glass.name, glass.index, glass.abbe};
     if (const std::optional<Glass> coded = glass_of_code(name)) return *coded;
     // No list of all names where none is near.
     std::vector<std::string> known = glass_names();

@@ -20,6 +20,7 @@ struct Glass {
     double index = 1;                 // at the d line, 587.6 nm
     double abbe = 0;                  // (n_d - 1) / (n_F - n_C); 0: the same index at all lines
     double index_c = 0, index_f = 0;  // where they are known by themselves; 0: by the Abbe number
+    std::string fault = {};           // of a catalogue's: why none can be made of it; empty: it can
 
     bool is_air() const { return name.empty(); }
 };
@@ -125,9 +126,10 @@ double vertex_of(const LensPrescription& lens, std::size_t row);
 
 // The catalogue of glasses: index and Abbe number at the d line, as their makers publish them.
 
-/// The glass of that name; older names without N- are glasses of their own. `name` may also be a code of n_d
-/// - 1 and V_d: "517642" and "517.642" are n_d 1.517 and V_d 64.2, "516800.641700" has more digits. Throws
-/// InputError(file, place) with the nearest known name where it is neither. `more` come before the catalogue.
+/// The glass of that name, in letters of any case; older names without N- are glasses of their own. `name`
+/// may also be a code of n_d - 1 and V_d: "517642" and "517.642" are n_d 1.517 and V_d 64.2, "516800.641700"
+/// has more digits. `more` come before the catalogue. Throws InputError(file, place) with the nearest known
+/// name where it is neither, and with the glass' fault where it has one.
 Glass find_glass(const std::string& name, const std::string& file, const std::string& place,
                  std::span<const Glass> more = {});
 

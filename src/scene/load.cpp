@@ -198,6 +198,10 @@ LensPrescription load_lens(const std::string& file, const std::string& glass_fil
     return parse_lens(read_required_file(file), file, glasses);
 }
 
+LensSide parse_lens_side(const std::string& json, const std::string& label) {
+    return parse_side(json, label);
+}
+
 namespace {
 
 /// Every "file" of the document, named from another folder.

@@ -25,6 +25,11 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
 /// those that are built in. Throws InputError with the file and the place in it.
 LensPrescription load_lens(const std::string& file, const std::string& glass_file = "");
 
+/// A side of a lens out of JSON as a scene's primitive has it, Q-type aspheres among them: "radius", "conic",
+/// "coefficients", "normalDepartures", "qcon", "qbfs", "normalizationRadius", "aperture". `label` stands in
+/// messages. Throws InputError with the key of what is wrong.
+LensSide parse_lens_side(const std::string& json, const std::string& label = "side");
+
 /// Where a scene's text comes from.
 struct SceneSource {
     SceneSource(std::string named);                               // relative paths start at the file's folder

@@ -162,6 +162,10 @@ TEST_CASE("glasses are found by name and by code, others are refused with the ne
     CHECK(std::fabs(find_glass("517.642", "", "").abbe - 64.2) < 1e-12);
     CHECK(std::fabs(find_glass("516800.641700", "", "").abbe - 64.17) < 1e-12);
     CHECK(glass_names().size() > 100);
+    CHECK(find_glass("n-bk7", "", "").name == "N-BK7");
+    const std::vector<Glass> mine{{.name = "Mine", .index = 1.6, .abbe = 40},
+                                  {.name = "BLACK", .fault = "a.agf: line 3: the glass BLACK has no index"}};
+    CHECK(find_glass("MINE", "", "", mine).index == 1.6);
     const auto refusal = [](const std::string& name) {
         try {
             find_glass(name, "a.zmx", "line 7");
@@ -170,6 +174,8 @@ TEST_CASE("glasses are found by name and by code, others are refused with the ne
         }
         return std::string();
     };
+    CHECK_THROWS_WITH(find_glass("black", "a.zmx", "line 7", mine),
+                      "a.zmx: line 7: a.agf: line 3: the glass BLACK has no index");
     CHECK(refusal("N-BK8").starts_with("a.zmx: line 7: unknown glass 'N-BK8'; did you mean 'N-BK7'?"));
     for (const char* name : {"", "PYREX", "12", "1.2", "517-42", "51764A", ".517642", "517642."}) {
         CAPTURE(name);

@@ -2,6 +2,7 @@
 import csv
 import math
 
+import numpy as np
 import pytest
 
 import trilens
@@ -52,6 +53,52 @@ def test_a_lens_primitive_has_its_sides():
         trilens.primitive_surface("lens", front=(1, 1))
     with pytest.raises(trilens.UsageError, match="front is"):
         trilens.primitive_surface("lens", front=(1,))
+
+
+def front_points(front):
+    """Of a lens whose back is flat: (r^2, z) all over its front."""
+    lens = trilens.primitive_surface("lens", axis=(0, 0, 1), thickness=3, front=front, back=(0, 5))
+    places = [(u / 7, v / 7) for u in range(8) for v in range(8)]
+    points = np.concatenate([lens.eval(face, places)["position"] for face in range(lens.face_count)])
+    squares = points[:, 0] ** 2 + points[:, 1] ** 2
+    on_front = (points[:, 2] < 1.5) & (squares < 24.9)
+    return squares[on_front], points[on_front, 2]
+
+
+def test_sides_of_a_lens_primitive_have_the_keys_of_scenes():
+    sphere = lambda s: s / 20 / (1 + np.sqrt(1 - s / 400))
+    cosine = lambda s: np.sqrt(1 - s / 400)
+    # Forbes' first two polynomials: Qcon 1 and 6 u^2 - 5; Qbfs 1 and (13 - 16 u^2) / sqrt(19).
+    cases = [
+        ({"coefficients": [0, 1e-4]}, lambda s: 1e-4 * s**2),
+        ({"normalDepartures": [1e-3, -2e-5]}, lambda s: (1e-3 * s - 2e-5 * s**2) / cosine(s)),
+        ({"qcon": [0.1, 0.02]}, lambda s: (s / 25) ** 2 * (0.1 + 0.02 * (6 * s / 25 - 5))),
+        (
+            {"qbfs": np.array([0.1, 0.02]), "normalizationRadius": 6},
+            lambda s: s / 36 * (1 - s / 36) * (0.1 + 0.02 * (13 - 16 * s / 36) / math.sqrt(19)) / cosine(s),
+        ),
+    ]
+    for keys, departure in cases:
+        squares, z = front_points({"radius": 20, "aperture": 5, **keys})
+        assert len(squares) > 100
+        assert z == pytest.approx(sphere(squares) + departure(squares), abs=1e-12)
+    squares, z = front_points((20, 5))
+    assert z == pytest.approx(sphere(squares), abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    "side, message",
+    [
+        ({"radius": 4}, "^front: .*aperture"),
+        ({"radius": 4, "aperture": 1, "sag": 1}, "^front: /sag: "),
+        ({"radius": 4, "aperture": 1, "conic": -1, "qbfs": [1]}, "^front: /qbfs: .*conic must be 0"),
+        ({"aperture": 1, "qcon": [0] * 8}, "^front: /qcon: "),
+        ({"aperture": -1}, "^front: /aperture: "),
+    ],
+)
+def test_a_side_that_is_none_is_refused_with_its_key(side, message):
+    with pytest.raises(trilens.InputError, match=message):
+        trilens.primitive_surface("lens", front=side)
 
 
 def test_unknown_glass_is_refused_with_its_line(tmp_path):

@@ -130,6 +130,58 @@ TEST_CASE("a decentred mirror whose axis returns leaves the next surface where i
     CHECK(length(poses[1].turn[2] - Vec3(0, 0, 1)) < 1e-15);
 }
 
+TEST_CASE("the image's tilts and decentres stand behind it in CODE V, before it in Zemax", "[scene][lens]") {
+    const std::string lens = "RDM\nSO 0 1E13\nS 50 4 NBK7\nS 0 30\nSI 0 0; CIR 5\n";
+    const LensPrescription code_v =
+        parse_lens(lens + " XDE -1; YDE 2\n ADE 10; BDE -5; CDE 3\nGO\n", "a.seq");
+    CHECK(code_v.image.shift == Vec3(-1, 2, 0));
+    CHECK(code_v.image.turn[2].y > 0.17);
+    const LensPrescription zemax = parse_lens(
+        std::string(kZemaxStart) + "SURF 1\n CURV 0.02\n DISZ 4\n GLAS N-BK7\nSURF 2\n DISZ 30\n" +
+            zemax_break(" PARM 1 -1\n PARM 2 2\n PARM 3 -10\n PARM 4 5\n PARM 5 3\n", 0, 3) + "SURF 4\n",
+        "a.zmx");
+    CHECK(ray_difference(code_v, zemax) < 1e-13);
+    CHECK(is_centred(parse_lens(lens, "a.seq")));
+    CHECK(lens_refusal(lens + "ADE 10; BEN\n", "a.seq") ==
+          "a.seq: line 6: BEN of a surface that is no mirror");
+    CHECK(lens_refusal(lens + "XOD 3\n", "a.seq").starts_with("a.seq: line 6: XOD: "));
+}
+
+TEST_CASE("one glass of a catalogue that has no index is refused where a lens asks for it", "[scene][lens]") {
+    const std::vector<Glass> glasses = parse_agf(
+        "NM GERMANIUM 2 0 0 0 0\nCD 8.28156 0 6.7288 0.44105 0.21307 3870.1\nNM Mine 13 0 1.5 60\n"
+        "NM EMPTY 2 0 0 0 0\nNM X 9 0 0.5 1\n",
+        "a.agf");
+    REQUIRE(glasses.size() == 4);
+    const auto with = [&](const std::string& name) {
+        return "SURF 0\n DISZ INFINITY\nSURF 1\n CURV 0.02\n DISZ 4\n GLAS " + name +
+               "\nSURF 2\n DISZ 9\nSURF 3\n DISZ 0\n";
+    };
+    const auto refused = [&](const std::string& text, const std::string& file) -> std::string {
+        try {
+            parse_lens(text, file, glasses);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(parse_lens(with("Mine"), "a.zmx", glasses).rows[0].glass.index == 1.5);
+    CHECK(parse_lens(with("mine"), "a.zmx", glasses).rows[0].glass.abbe == 60);
+    CHECK(parse_lens(R"({"surfaces": [{"radius": 50, "thickness": 4, "glass": "Mine"}, {}]})", "a.json",
+                     glasses)
+              .rows[0]
+              .glass.index == 1.5);
+    CHECK(refused(with("GERMANIUM"), "a.zmx") ==
+          "a.zmx: line 6: a.agf: line 2: the glass GERMANIUM has no "
+          "index from 1 to 10 at a visible line");
+    CHECK(refused("RDM\nSO 0 1E13\nS 50 4 GERMANIUM\nS 0 9\nSI 0 0\n", "a.seq")
+              .starts_with("a.seq: line 3: a.agf: line 2: the glass GERMANIUM"));
+    CHECK(refused(with("EMPTY"), "a.zmx") ==
+          "a.zmx: line 6: a.agf: line 4: the glass EMPTY has no coefficients (CD)");
+    CHECK(refused(with("X"), "a.zmx") ==
+          "a.zmx: line 6: a.agf: line 5: the glass X has no index from 1 to 10");
+}
+
 TEST_CASE("glasses are read from catalogues and private tables, before those that are built in",
           "[scene][lens]") {
     const std::string agf =
@@ -175,6 +227,10 @@ TEST_CASE("Q-type aspheres of JSON are normalised by their own radius, or by the
     const LensSide mild = side(R"("radius": 20, "aperture": 5, "qbfs": [0.1])");
     CHECK(std::fabs(sag_at(mild, 25).z - sag_at(side(R"("radius": 20, "aperture": 5)"), 25).z) < 1e-15);
     CHECK(departs_along_normal(mild));
+    const LensSide alone = parse_lens_side(R"({"radius": 20, "aperture": 5, "qbfs": [0.1]})");
+    CHECK(alone.normal_departures == mild.normal_departures);
+    CHECK_THROWS_WITH(parse_lens_side(R"({"aperture": 5, "conic": -1, "qbfs": [1]})", "front"),
+                      "front: /qbfs: departs from a sphere: the side's conic must be 0");
 }
 
 TEST_CASE("a scene has a telescope's mirrors as bodies of chrome, and says which holes it leaves out",
@@ -211,6 +267,24 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
     CHECK(code_v("S 0 1\nADE 10; BEN") == "a.seq: line 5: BEN of a surface that is no mirror");
     CHECK(code_v("XDE 1..2") == "a.seq: line 4: XDE needs a number, not \"1..2\"");
     CHECK(code_v("YTO") == "a.seq: line 4: YTO: surfaces of revolution that refract or reflect are read");
+    CHECK(code_v("CIR OBS 2") ==
+          "a.seq: line 4: CIR OBS: rims (CIR, CLR, EDG) and holes (HOL) are read, obscurations are not");
+    CHECK(code_v("CIR Z2 5").starts_with("a.seq: line 4: CIR Z2: "));
+    CHECK(code_v("CIR -5") == "a.seq: line 4: CIR is negative");
+    CHECK(code_v("CIR EDG 9; CIR CLR 8; CIR HOL 2").empty());
+    for (const std::string word :
+         {"CIR S1 5", "CIR S1 HOL 5", "ADE S1 10", "STO S1", "GLA S1 NBK7", "K S1 -1", "THI S1..2 3",
+          "RDY SI 9", "DAR S1", "CUY S'MAIN' 0.1", "RMD SA REFL"}) {
+        CAPTURE(word);
+        const std::string message = ": " + word.substr(0, word.find(' ', word.find(' ') + 1)) +
+                                    ": commands of a surface are read behind it, without its name";
+        CHECK(code_v(word) == "a.seq: line 4" + message);
+        CHECK(code_v("SI 0 0\n" + word) == "a.seq: line 5" + message);
+    }
+    CHECK(code_v("SI 0 0\nCYL S1").starts_with("a.seq: line 5: CYL: "));
+    CHECK(code_v("THC S1 0; COM S1 main").empty());
+    CHECK(lens_refusal("RDM\nSO 0 1E13\nADE 0; YDE 2\nS -100 -50 REFL\nSI 0 0\n", "a.seq") ==
+          "a.seq: line 3: the object (SO) is tilted or decentred: that is not read");
     CHECK(code_v("CIR HOL") == "a.seq: line 4: CIR needs a number, not \"HOL\"");
     const auto prv = [](const std::string& table) {
         return lens_refusal("PRV\n" + table + "\nEND\nRDM\nSO 0 1E13\nS 50 4 'G'\nS 0 9\nSI 0 0\n", "a.seq");
@@ -232,7 +306,7 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
     CHECK(agf("CC\n") == "a.agf: has no line NM: it is no catalogue of glasses");
     CHECK(agf("NM\n") == "a.agf: line 1: NM needs a name");
     CHECK(agf("NM X 2\nCD 1 2 3\n") == "a.agf: line 2: CD needs a number");
-    CHECK(agf("NM X 9 0 0.5 1\n") == "a.agf: line 1: the glass X has no index from 1 to 10");
+    CHECK(agf("NM X 9 0 0.5 1\n").empty());
     CHECK(agf("CD 1 2 3\n") == "a.agf: line 1: coefficients before a glass (NM)");
     const auto json = [](const std::string& row) {
         return lens_refusal(R"({"surfaces": [{"radius": -9, "thickness": 1, "ior": 1.5}, )" + row + "]}",

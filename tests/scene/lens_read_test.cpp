@@ -112,6 +112,27 @@ TEST_CASE("a Zemax file's surfaces are read, as UTF-8 and as UTF-16", "[scene][l
           50.5);
 }
 
+TEST_CASE("a circular aperture of Zemax is its inner radius and its outer one, within the surface's own",
+          "[scene][lens]") {
+    const auto side = [](const std::string& lines) {
+        const LensRow row = parse_zemax(zemax_text("DIAM 10 1", lines), "a.zmx").rows.at(0);
+        return Vec2(row.hole, row.side.aperture);
+    };
+    CHECK(side("CLAP 0 8 0") == Vec2(0, 8));
+    CHECK(side("DIAM 10 1\r\n  CLAP 0 8 0") == Vec2(0, 8));
+    CHECK(side("CLAP 0 8 0\r\n  DIAM 10 1") == Vec2(0, 8));
+    CHECK(side("DIAM 10 1\r\n  CLAP 2 12 0\r\n  OBDC 0 0.0") == Vec2(2, 10));
+    CHECK(side("DIAM 0 0\r\n  CLAP 2 12 0\r\n  FLAP 0 11 0") == Vec2(2, 12));
+    for (const std::string line :
+         {"OBDC 0 1", "OBSC 0 2 0", "SQAP 5 5 0", "ELAP 5 4 0", "SQOB 1 1 0", "ELOB 1 2 0", "SPID 0.5 3 0"}) {
+        CAPTURE(line);
+        const std::string place = "a.zmx: line 12: " + line.substr(0, 4) + ": ";
+        CHECK(refusal(zemax_text("DIAM 10 1", "DIAM 10 1\r\n  " + line)).starts_with(place));
+    }
+    // The detector's shape is not the lens'.
+    CHECK(refusal(zemax_text("SURF 3", "SURF 3\r\n  SQAP 4 3 0")).empty());
+}
+
 TEST_CASE("a CODE V sequence is read in radii and in curvatures, over lines and semicolons",
           "[scene][lens]") {
     const std::string text =
@@ -146,9 +167,11 @@ TEST_CASE("lens files of what is no lens are refused with their line", "[scene][
           std::string::npos);
     CHECK(refusal(zemax_text("N-BK7", "MIRROR")) ==
           "a.zmx: line 5: its thickness is positive: behind a mirror light runs against the axis");
-    CHECK(refusal(zemax_text("DIAM 10 1", "CLAP 10 20")) == "");
     CHECK(refusal(zemax_text("DIAM 10 1", "DIAM 10 1\r\n  CLAP 11 20")) ==
           "a.zmx: line 5: its hole is as large as its aperture");
+    CHECK(refusal(zemax_text("DIAM 10 1", "CLAP 10")) == "a.zmx: line 11: CLAP needs a number");
+    CHECK(refusal(zemax_text("DIAM 10 1", "CLAP 10 10 0")) ==
+          "a.zmx: line 11: CLAP has its inner radius, 0 or more, then a larger one");
     CHECK(refusal(zemax_text("N-BK7", "N-BK6"))
               .starts_with("a.zmx: line 10: unknown glass 'N-BK6'; did you mean"));
     CHECK(refusal(zemax_text("0.02", "two")) == "a.zmx: line 8: CURV needs a number, not \"two\"");

@@ -339,6 +339,7 @@ TEST_CASE("what looks through meshes by itself refuses what does not fit togethe
 TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]") {
     for (const std::string& text : kOddTexts) {
         only_errors("load_lens", [&] { load_lens(text); });
+        only_errors("parse_lens_side", [&] { parse_lens_side(text, text); });
         only_errors("find_glass", [&] { find_glass(text, text, text); });
     }
     CHECK(!glass_names().empty());

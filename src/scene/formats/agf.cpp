@@ -24,7 +24,8 @@ class CatalogueReader : LensLines {
             take(split_words(std::string_view(text_).substr(at, end - at)));
             at = end + 1;
         }
-        if (!has_names_) throw InputError(lens_.file, "", "has no line NM: it is no catalogue of glasses");
+        if (glasses_.empty())
+            throw InputError(lens_.file, "", "has no line NM: it is no catalogue of glasses");
         return std::move(glasses_);
     }
 
@@ -33,36 +34,48 @@ class CatalogueReader : LensLines {
         if (words.empty()) return;
         if (words[0] == "NM") {
             if (words.size() < 2) fail("NM needs a name");
-            has_names_ = true;
-            name_ = in_capitals(words[1]);
             const double formula = number(words, 2);
             formula_ = formula == 1   ? std::optional(Formula::kSchott)
                        : formula == 2 ? std::optional(Formula::kSellmeier)
                                       : std::nullopt;
-            if (!formula_) add_by_abbe(number(words, 4), number(words, 5));
+            glasses_.push_back({.name = in_capitals(words[1])});
+            if (formula_)
+                set_fault("has no coefficients (CD)");
+            else
+                set_by_abbe(number(words, 4), number(words, 5));
         } else if (words[0] == "CD") {
-            if (!has_names_) fail("coefficients before a glass (NM)");
-            if (formula_) add(words);
+            if (glasses_.empty()) fail("coefficients before a glass (NM)");
+            if (formula_) set(words);
             formula_.reset();
         }
     }
 
-    void add(const std::vector<std::string_view>& words) {
+    void set(const std::vector<std::string_view>& words) {
         std::array<double, 6> terms;
         for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = number(words, i + 1);
-        const auto glass = *formula_ == Formula::kSchott ? schott_glass : sellmeier_glass;
-        glasses_.push_back(glass(name_, terms, lens_.file, place()));
+        Glass& glass = glasses_.back();
+        const auto by_formula = *formula_ == Formula::kSchott ? schott_glass : sellmeier_glass;
+        try {
+            glass = by_formula(glass.name, terms, lens_.file, place());
+        } catch (const InputError& error) {
+            glass.fault = error.what();
+        }
     }
 
-    void add_by_abbe(double index, double abbe) {
-        if (!(index >= 1 && index <= 10)) fail("the glass " + name_ + " has no index from 1 to 10");
-        glasses_.push_back({name_, index, std::max(abbe, 0.0)});
+    void set_by_abbe(double index, double abbe) {
+        glasses_.back().index = index;
+        glasses_.back().abbe = std::max(abbe, 0.0);
+        if (!(index >= 1 && index <= 10)) set_fault("has no index from 1 to 10");
+    }
+
+    /// Of the last glass. Infrared materials have no index in the visible, and most lenses do not ask.
+    void set_fault(const std::string& what) {
+        Glass& glass = glasses_.back();
+        glass.fault = InputError(lens_.file, place(), "the glass " + glass.name + " " + what).what();
     }
 
     const std::string& text_;
-    std::string name_;
-    std::optional<Formula> formula_;  // of the glass whose coefficients are to come
-    bool has_names_ = false;
+    std::optional<Formula> formula_;  // of the last glass, whose coefficients are to come
 };
 
 }  // namespace

@@ -12,11 +12,17 @@
 namespace trilens {
 namespace {
 
+/// Commands of a surface that are read, but for its terms (A to J) and tilts.
+constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR",
+                                              "STO", "K",   "DAR", "BEN", "REV"};
+
 /// Commands of surfaces that are none of revolution, that neither refract nor reflect, or whose tilts are not
 /// about their own vertex.
-constexpr std::string_view kRefused[] = {"REFL", "CYL", "YTO", "XTO", "SPS", "GRT", "HOE",
-                                         "DIF",  "NSS", "REX", "REY", "ELX", "ELY", "GRX",
-                                         "ADX",  "THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
+constexpr std::string_view kRefused[] = {"REFL", "CYL", "YTO", "XTO", "SPS", "GRT", "HOE", "DIF",
+                                         "NSS",  "REX", "REY", "ELX", "ELY", "GRX", "ADX", "ADY",
+                                         "THG",  "XOD", "YOD", "ZOD", "GLB", "RET"};
+/// Those of them that say where a surface is.
+constexpr std::string_view kPlacing[] = {"THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
 
 /// Shifts along x, y, z and tilts about them.
 constexpr std::string_view kTilts[] = {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
@@ -29,6 +35,19 @@ struct WrittenTilt {
 
 /// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
 constexpr std::string_view kTerms = "ABCDEFG";
+
+template <std::size_t kCount>
+bool is_among(const std::string_view (&words)[kCount], std::string_view word) {
+    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
+/// S1, S2..4, SO, SI, SA (all), SS (the stop), S'LABEL': surfaces by their names.
+bool names_surface(std::string_view written) {
+    const std::string word = in_capitals(written);
+    if (word.size() < 2 || word[0] != 'S') return false;
+    if (word[1] == '\'' || (word[1] >= '0' && word[1] <= '9')) return true;
+    return word == "SO" || word == "SI" || word == "SA" || word == "SS";
+}
 
 class SequenceReader : LensLines {
   public:
@@ -55,6 +74,12 @@ class SequenceReader : LensLines {
         if (!ended_)
             throw InputError(lens_.file, "", "has no surfaces from SO to SI: it is no CODE V sequence");
         for (std::size_t i = 0; i < lens_.rows.size(); ++i) bend(lens_.rows[i], tilts_[i]);
+        if (object_tilt_.tilt.decentre != Vec3(0) || object_tilt_.tilt.degrees != Vec3(0))
+            throw InputError(lens_.file, object_tilt_.place,
+                             "the object (SO) is tilted or decentred: that is not read");
+        LensRow image;
+        bend(image, image_tilt_);
+        lens_.image = image.before;
         check_prescription(lens_);
         return std::move(lens_);
     }
@@ -85,11 +110,12 @@ class SequenceReader : LensLines {
             by_curvature_ = words.size() > 1 && in_capitals(words[1]) == "N";
         } else if (key == "SO" || key == "SI") {
             ended_ = ended_ || key == "SI";
-            in_lens_ = false;
+            part_ = key == "SI" ? Part::kImage : Part::kObject;
         } else if (key == "S" || is_numbered(key)) {
             begin_surface(words);
-        } else if (in_lens_) {
-            take_of_surface(key, words);
+        } else {
+            check_command(key, words);
+            take_of_part(key, words);
         }
     }
 
@@ -100,7 +126,7 @@ class SequenceReader : LensLines {
 
     void begin_surface(const std::vector<std::string_view>& words) {
         if (ended_) fail("a surface behind the image");
-        in_lens_ = true;
+        part_ = Part::kLens;
         LensRow& row = lens_.rows.emplace_back();
         row.place = place();
         tilts_.emplace_back();
@@ -130,12 +156,12 @@ class SequenceReader : LensLines {
     void set_glass(std::string_view written) {
         std::string name = in_capitals(written);
         std::erase(name, '\'');
-        const auto is_mine = [&](const Glass& glass) { return glass.name == name; };
+        const auto is_mine = [&](const Glass& glass) { return in_capitals(glass.name) == name; };
         if (std::none_of(glasses_.begin(), glasses_.end(), is_mine)) name = name.substr(0, name.find('_'));
         if (name == "REFL") return set_mode(name);
         if (name == "AIR") return;
         std::vector<std::string> known = glass_names();
-        for (const Glass& glass : glasses_) known.push_back(glass.name);
+        for (const Glass& glass : glasses_) known.push_back(in_capitals(glass.name));
         const auto is_known = [&](const std::string& one) {
             return std::find(known.begin(), known.end(), one) != known.end();
         };
@@ -143,6 +169,27 @@ class SequenceReader : LensLines {
             name.substr(0, 1) + "-" + name.substr(std::min<std::size_t>(1, name.size()));
         if (!is_known(name) && is_known(hyphenated)) name = hyphenated;
         lens_.rows.back().glass = find_glass(name, lens_.file, place(), glasses_);
+    }
+
+    /// Fails where a command says something of a surface that the lens would lack.
+    void check_command(const std::string& key, const std::vector<std::string_view>& words) const {
+        const bool is_named = words.size() > 1 && names_surface(words[1]);
+        if (is_among(kRefused, key) &&
+            (part_ == Part::kLens || is_named || (part_ != Part::kNone && is_among(kPlacing, key))))
+            fail(key + ": surfaces of revolution that refract or reflect are read");
+        const bool is_term = key.size() == 1 && key[0] >= 'A' && key[0] <= 'J' && key != "I";
+        if (is_named && (is_term || is_among(kSurfaceWords, key) || is_among(kTilts, key)))
+            fail(key + " " + std::string(words[1]) +
+                 ": commands of a surface are read behind it, without its name");
+    }
+
+    /// Of object and image, where they are; of a surface all.
+    void take_of_part(const std::string& key, const std::vector<std::string_view>& words) {
+        if (part_ == Part::kNone) return;
+        WrittenTilt& tilt = part_ == Part::kObject  ? object_tilt_
+                            : part_ == Part::kImage ? image_tilt_
+                                                    : tilts_.back();
+        if (!take_tilt(key, words, tilt) && part_ == Part::kLens) take_of_surface(key, words);
     }
 
     void take_of_surface(const std::string& key, const std::vector<std::string_view>& words) {
@@ -167,22 +214,23 @@ class SequenceReader : LensLines {
             row.side.coefficients[kTerms.find(key[0]) + 1] = number(words, 1);
         else if ((key == "H" || key == "J") && number(words, 1) != 0)
             fail(key + " is beyond r^16");
-        else if (take_tilt(key, words))
-            return;
-        else if (std::find(std::begin(kRefused), std::end(kRefused), key) != std::end(kRefused))
-            fail(key + ": surfaces of revolution that refract or reflect are read");
     }
 
-    /// "CIR 10", "CIR EDG 10": the rim; "CIR HOL 2", "CIR OBS 2": what is in the middle.
+    /// "CIR 10", "CIR EDG 10", "CIR CLR 10": the rim; "CIR HOL 2": a hole in the middle. What obscures stops
+    /// light, where a hole of a mirror lets it by.
     void set_aperture(const std::vector<std::string_view>& words) {
         LensRow& row = lens_.rows.back();
         const std::string of = words.size() > 2 ? in_capitals(words[1]) : "";
-        const double radius = number(words, words.size() > 2 ? 2 : 1);
-        (of == "HOL" || of == "OBS" ? row.hole : row.side.aperture) = radius;
+        if (!of.empty() && of != "EDG" && of != "CLR" && of != "HOL")
+            fail("CIR " + of + ": rims (CIR, CLR, EDG) and holes (HOL) are read" +
+                 (of == "OBS" ? ", obscurations are not" : ""));
+        const double radius = number(words, of.empty() ? 1 : 2);
+        if (radius < 0) fail("CIR is negative");
+        (of == "HOL" ? row.hole : row.side.aperture) = radius;
     }
 
-    bool take_tilt(const std::string& key, const std::vector<std::string_view>& words) {
-        LensTilt& tilt = tilts_.back().tilt;
+    bool take_tilt(const std::string& key, const std::vector<std::string_view>& words, WrittenTilt& written) {
+        LensTilt& tilt = written.tilt;
         const auto* const found = std::find(std::begin(kTilts), std::end(kTilts), key);
         if (found != std::end(kTilts)) {
             const auto k = static_cast<int>(found - std::begin(kTilts));
@@ -196,7 +244,7 @@ class SequenceReader : LensLines {
         } else {
             return false;
         }
-        tilts_.back().place = place();
+        written.place = place();
         return true;
     }
 
@@ -243,9 +291,13 @@ class SequenceReader : LensLines {
     }
 
     const std::string& text_;
+    enum class Part { kNone, kObject, kLens, kImage };  // whose commands are read
+
+    WrittenTilt object_tilt_, image_tilt_;
     std::vector<WrittenTilt> tilts_;   // of the rows
     std::vector<double> wavelengths_;  // of private glasses
-    bool by_curvature_ = false, in_lens_ = false, ended_ = false, in_private_ = false;
+    Part part_ = Part::kNone;
+    bool by_curvature_ = false, ended_ = false, in_private_ = false;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Reads what Zemax' sequential files say of their surfaces, line by line.
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "base/util/error.h"
@@ -9,6 +11,10 @@
 
 namespace trilens {
 namespace {
+
+/// Apertures that are no circles about the vertex, and what stands in the light.
+constexpr std::string_view kApertures[] = {"OBSC", "SQAP", "SQOB", "ELAP", "ELOB",
+                                           "SPID", "UDAP", "UDOB", "USAP"};
 
 /// A file's surface, from object to image.
 struct ZemaxSurface {
@@ -20,6 +26,8 @@ struct ZemaxSurface {
         std::string written, place;
     };
     std::vector<Parameter> parameters;
+    double clear_radius = 0;  // of a circular aperture; 0: the surface has none but its own
+    std::string aperture_fault = {}, aperture_place = {};
 
     double parameter(int index) const {
         for (const Parameter& one : parameters)
@@ -95,6 +103,13 @@ class ZemaxReader : LensLines {
             if (!surface.far) row.thickness = number(words, 1);
         } else if (key == "CLAP") {
             row.hole = number(words, 1);
+            surface.clear_radius = number(words, 2);
+            if (!(row.hole >= 0 && surface.clear_radius > row.hole))
+                fail("CLAP has its inner radius, 0 or more, then a larger one");
+        } else if (changes_aperture(words)) {
+            surface.aperture_fault =
+                std::string(key) + ": circular apertures about the vertex (DIAM, CLAP) are read";
+            surface.aperture_place = place();
         } else if (key == "PARM") {
             const double index = number(words, 1);
             surface.parameters.push_back({index, number(words, 2), std::string(words[1]), place()});
@@ -102,6 +117,11 @@ class ZemaxReader : LensLines {
             row.mirror = words.size() > 1 && words[1] == "MIRROR";
             row.glass = row.mirror ? Glass() : glass(words);
         }
+    }
+
+    bool changes_aperture(const std::vector<std::string_view>& words) const {
+        if (words[0] == "OBDC") return number(words, 1) != 0 || number(words, 2) != 0;
+        return std::find(std::begin(kApertures), std::end(kApertures), words[0]) != std::end(kApertures);
     }
 
     void set_coefficients(const ZemaxSurface& surface, LensSide& side) const {
@@ -126,6 +146,8 @@ class ZemaxReader : LensLines {
     void add(const ZemaxSurface& surface, bool is_last) {
         if (surface.far && !is_last)
             throw InputError(lens_.file, surface.row.place, "what follows is at infinity");
+        if (!surface.aperture_fault.empty())
+            throw InputError(lens_.file, surface.aperture_place, surface.aperture_fault);
         if (surface.type == "COORDBRK") {
             add_break(surface);
             return;
@@ -137,6 +159,9 @@ class ZemaxReader : LensLines {
                 "a surface of type " + surface.type + ": STANDARD, EVENASPH and COORDBRK are read");
         LensRow& row = lens_.rows.emplace_back(surface.row);
         if (is_asphere) set_coefficients(surface, row.side);
+        double& rim = row.side.aperture;
+        if (surface.clear_radius > 0)
+            rim = rim > 0 ? std::min(rim, surface.clear_radius) : surface.clear_radius;
         row.before = bend_;
         bend_ = {};
     }

@@ -87,6 +87,7 @@ void from_json_value(const Json& json, LensSide& side) {
     read_fields(node, side_fields(), written);
     side = side_of(written, node);
 }
+
 Json lens_side_schema() {
     return object_schema(
         {.title = "a lens' side",
@@ -246,13 +247,19 @@ LensPrescription read_surfaces(const Node& surfaces, std::span<const Glass> glas
     return lens;
 }
 
+/// JSON of what the scene's schema defines by that name.
+Json parse_defined(const std::string& bytes, const std::string& file, const char* name) {
+    Json json = parse_json(bytes, file);
+    const Json& definitions = scene_schema_json().at("definitions");
+    Json alone = definitions.at(name);
+    alone["definitions"] = definitions;
+    if (const auto found = find_problem(json, alone)) fail_at(file, found->place, found->message);
+    return json;
+}
+
 LensPrescription parse_lens_json(const std::string& bytes, const std::string& file,
                                  std::span<const Glass> glasses) {
-    const Json json = parse_json(bytes, file);
-    const Json& whole = scene_schema_json();
-    Json alone = whole.at("definitions").at("lens");
-    alone["definitions"] = whole.at("definitions");
-    if (const auto found = find_problem(json, alone)) fail_at(file, found->place, found->message);
+    const Json json = parse_defined(bytes, file, "lens");
     const Node root{json, "", file};
     if (!root.has("surfaces")) root["file"].fail("a lens file has its own 'surfaces'");
     if (root.has("glasses")) root["glasses"].fail("are named beside a lens file, not in it");
@@ -262,6 +269,14 @@ LensPrescription parse_lens_json(const std::string& bytes, const std::string& fi
 }
 
 }  // namespace
+
+LensSide parse_side(const std::string& bytes, const std::string& file) {
+    const Json json = parse_defined(bytes, file, "lensSide");
+    const Node node{json, "", file};
+    WrittenSide written;
+    read_fields(node, side_fields(), written);
+    return side_of(written, node);
+}
 
 LensPrescription parse_lens(const std::string& bytes, const std::string& file,
                             std::span<const Glass> glasses) {

@@ -28,6 +28,9 @@ ReadLens read_lens(const Node& lens, std::size_t index, Reading& reading);
 LensPrescription parse_lens(const std::string& bytes, const std::string& file,
                             std::span<const Glass> glasses = {});
 
+/// A side as a primitive of a scene has it. Throws InputError(file, place in it).
+LensSide parse_side(const std::string& bytes, const std::string& file);
+
 Json lens_schema();          // of a scene's `lenses`
 Json lens_surface_schema();  // of a lens
 
