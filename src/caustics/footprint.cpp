@@ -72,8 +72,7 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
         reach = 0.5 * (length(side[0]) + length(side[1]));
         return;
     }
-    const Vec3 other = std::fabs(normal.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    dual_s = normalize(cross(normal, other));
+    dual_s = unit_across(normal);
     dual_t = cross(normal, dual_s);
 }
 

@@ -12,8 +12,7 @@ constexpr double kWiderWindow = 1.05;
 constexpr double kWidestWindow = 1.7320508;
 
 std::array<Vec3, 2> across(const Vec3& axis) {
-    const Vec3 other = std::fabs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    const Vec3 u = normalize(cross(axis, other));
+    const Vec3 u = unit_across(axis);
     return {u, cross(axis, u)};
 }
 

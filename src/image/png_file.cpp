@@ -109,12 +109,9 @@ std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char
         const std::array<float, 256>& linear = linear_from_byte();
         for (std::size_t i = 0; i < pixels; ++i)
             for (std::size_t c = 0; c < 3; ++c) texture->rgb[3 * i + c] = linear[stored[4 * i + c]];
-        std::vector<float> alpha;
         for (std::size_t i = 0; has_alpha && i < pixels; ++i)
-            alpha.push_back(static_cast<float>(stored[4 * i + 3]) / 255.0F);
-        // Where all is opaque there is none, as in files without.
-        if (std::any_of(alpha.begin(), alpha.end(), [](float a) { return a < 1; }))
-            texture->alpha = std::move(alpha);
+            texture->alpha.push_back(static_cast<float>(stored[4 * i + 3]) / 255.0F);
+        texture->drop_opaque_alpha();
         return texture;
     } catch (const std::bad_alloc&) {
         return nullptr;

@@ -90,6 +90,7 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
                 texture->alpha[to] = values[from * static_cast<std::size_t>(spec.nchannels) + of_pixel];
         }
     }
+    texture->drop_opaque_alpha();
     return texture;
 }
 

@@ -43,8 +43,7 @@ std::optional<SphereSearch::Zero> SphereSearch::settle(const Vec3& rough, const 
                           by_radius * (point - sphere_.center)};
     Vec3 normal = normalize_or_zero(in_single(rough));
     Vec3 across = normalize_or_zero(cross(from[0], from[1]));
-    if (across == Vec3(0))
-        across = normalize(cross(normal, std::fabs(normal.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+    if (across == Vec3(0)) across = unit_across(normal);
     for (int step = 0; step < kLastSphereSteps; ++step) {
         Vec3 bend(0);
         double slope_along = 0, slope_across = 0;

@@ -71,8 +71,7 @@ std::optional<double> traced_displacement(const World& world, const LinearCamera
     };
     const auto start = mirrored(pixel);
     if (!start) return std::nullopt;
-    const Vec3 axis = start->direction, side = std::fabs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    const Vec3 a = normalize(cross(axis, side)), b = cross(axis, a);
+    const Vec3 axis = start->direction, a = unit_across(axis), b = cross(axis, a);
     const auto miss = [&](const Vec2& place) -> std::optional<Vec2> {
         const auto ray = mirrored(place);
         if (!ray) return std::nullopt;

@@ -2,6 +2,7 @@
 // reads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -20,6 +21,11 @@ struct Texture {
     int width = 0, height = 0;
     std::vector<float> rgb;
     std::vector<float> alpha;  // 0..1, one per texel; empty: all opaque
+
+    /// Where all is opaque there is no alpha, as in files that have none.
+    void drop_opaque_alpha() {
+        if (std::all_of(alpha.begin(), alpha.end(), [](float a) { return a >= 1; })) alpha = {};
+    }
 };
 
 /// What lies beyond a picture's edges: as glTF's samplers have it.

@@ -35,4 +35,9 @@ inline Vec3 normalize_or_zero(const Vec3& direction) {
     return scaled / length(scaled);
 }
 
+/// A unit vector at right angles to a unit vector; which one is not said.
+inline Vec3 unit_across(const Vec3& unit) {
+    return normalize(cross(unit, glm::abs(unit.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+}
+
 }  // namespace trilens

@@ -26,6 +26,12 @@ double extent_of(const RationalPatch& patch) {
     return extent;
 }
 
+double joint_tolerance(const Box& all) {
+    if (all.empty()) return 0;
+    const Vec3 size = all.size();
+    return kSameControl * std::max({size.x, size.y, size.z});
+}
+
 Box bounds_of(const RationalPatch& patch) {
     Box box;
     for (std::size_t k = 0; k < patch.points.size(); ++k) box.include(patch.control(k));
@@ -172,10 +178,7 @@ class Joining {
             count += patch.points.size();
             box.include(bounds_of(patch));
         }
-        if (!box.empty()) {
-            const Vec3 size = box.size();
-            tolerance_ = kSameControl * std::max({size.x, size.y, size.z});
-        }
+        tolerance_ = joint_tolerance(box);
         return count;
     }
 
@@ -215,7 +218,6 @@ class Joining {
         std::stable_sort(order.begin(), order.end(),
                          [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
         Classes edges(sides_.size());
-        std::vector<bool> against(sides_.size(), false);  // the first side of its edge
         for (std::size_t i = 0; i < order.size(); ++i)
             for (std::size_t j = i + 1; j < order.size() && key(order[j]) - key(order[i]) <= 2 * tolerance_;
                  ++j)

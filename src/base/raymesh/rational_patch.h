@@ -99,10 +99,15 @@ SurfacePoint evaluate_first_order(const RationalPatch& patch, const Vec2& uv, do
 /// Whether all of a side is one point, to rounding: as join_patches leaves it.
 bool is_collapsed(const RationalPatch& patch, std::size_t side);
 
+inline constexpr double kSameControl = 1e-9;  // a share: of a weight, or of the largest side of a box
+
+/// How far apart points of patches within this box may lie and count as one; 0 for an empty box.
+double joint_tolerance(const Box& all);
+
 /// The borders of patches whose sides agree, point by point, in either direction, and weight by weight but
-/// for a common factor. Tolerance: kSameControl. Control points of sides that agree, or that are one point,
-/// become the same, those of the first patch: no gap is left.
+/// for a common factor. Tolerances: joint_tolerance of the box of all control points, kSameControl. Control
+/// points of sides that agree, or that are one point, become the same, those of the first patch: no gap is
+/// left.
 std::vector<FaceBorder> join_patches(std::span<RationalPatch> patches);
-inline constexpr double kSameControl = 1e-9;  // of the largest side of the box of all points
 
 }  // namespace trilens

@@ -35,8 +35,7 @@ std::optional<TwoPlanes> between_planes(const std::array<Ray, 3>& rays, const Ve
     for (const Ray& ray : rays) origin += ray.origin / 3.0;
     const Vec3 axis = normalize_or_zero(across);
     if (axis == Vec3(0)) return std::nullopt;
-    const Vec3 right = normalize(cross(axis, std::fabs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0))),
-               up = cross(right, axis);
+    const Vec3 right = unit_across(axis), up = cross(right, axis);
     TwoPlanes planes;
     std::array<Vec3, 3> from, way;
     for (std::size_t k = 0; k < 3; ++k) {

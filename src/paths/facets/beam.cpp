@@ -87,7 +87,7 @@ std::optional<Beam> Beam::around(const PartSamples<Ray>& rays) {
     }
     const Vec3 z = normalize_or_zero(sum);
     if (z == Vec3(0)) return std::nullopt;
-    const Vec3 x = normalize(cross(z, std::fabs(z.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0))), y = cross(z, x);
+    const Vec3 x = unit_across(z), y = cross(z, x);
     beam.axis_ = {x, y, z};
     beam.lateral_ = {x, y, (x + y) / std::sqrt(2.0), (x - y) / std::sqrt(2.0)};
 

@@ -17,10 +17,6 @@ constexpr double kMostTurn = 0.2;   // radians that one step may go
 constexpr double kBehind = -1e-9;   // of the way: a point on the last mirror itself counts as before it
 constexpr int kMostNewtonSteps = 16, kMostHalvings = 4;
 
-Vec3 perpendicular(const Vec3& unit) {
-    return normalize(cross(unit, std::fabs(unit.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
-}
-
 /// How the normal turns along u and along v at a hit: of n = (du x dv) / |du x dv|.
 std::array<Vec3, 2> own_normal_along(const SurfacePoint& at) {
     const Vec3 across = cross(at.du, at.dv), &n = at.normal;
@@ -89,7 +85,7 @@ Vec3 miss_of(const ChainRay& of, const Vec3& point) {
 /// The turns of the eye's direction that take the miss away, to first order; none at a fold.
 std::optional<Vec2> step_against(const ChainRay& of, const Vec3& point) {
     const Vec3& u = of.ray.direction;
-    const Vec3 x = perpendicular(u), y = cross(u, x);
+    const Vec3 x = unit_across(u), y = cross(u, x);
     const Vec3 miss = miss_of(of, point);
     const double far = dot(point - of.ray.origin, u);
     const Vec3 a = of.origin_along[0] + far * of.direction_along[0];
@@ -116,7 +112,7 @@ std::optional<ChainRay> chain_ray(const MirrorChain& chain, const Vec3& eye_dire
     ChainRay of;
     of.eye_direction = normalize_or_zero(eye_direction);
     if (of.eye_direction == Vec3(0)) return std::nullopt;
-    of.turn[0] = perpendicular(of.eye_direction);
+    of.turn[0] = unit_across(of.eye_direction);
     of.turn[1] = cross(of.eye_direction, of.turn[0]);
     of.direction_along = of.turn;
     of.ray = {chain.eye, of.eye_direction};

@@ -88,8 +88,7 @@ struct Linear {
 std::optional<Linear> linearised(const HistoryQuery& query, const Vec2& pixel, const Exit& exit) {
     Linear linear;
     const Vec3& u = exit.ray.direction;
-    const Vec3 side = std::fabs(u.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    linear.axis[0] = normalize(cross(u, side));
+    linear.axis[0] = unit_across(u);
     linear.axis[1] = cross(u, linear.axis[0]);
     for (int k = 0; k < 2; ++k) {
         Vec2 step(0);

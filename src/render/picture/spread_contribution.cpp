@@ -161,7 +161,7 @@ std::optional<MapTexels> SpreadContribution::mean_texels() const {
     const std::optional<SeenThere> there = at(centroid_);
     if (!there) return std::nullopt;
     MapTexels texels = texels_over(*there, spread_, map_.differential(centroid_));
-    if (sample_count() > 1 && !is_parallelogram(*there)) add_colours_of_samples(texels);
+    if (sample_count() > 1 && !is_parallelogram(*there)) set_means_of_samples(texels);
     return texels;
 }
 
@@ -186,21 +186,26 @@ bool SpreadContribution::is_parallelogram(const SeenThere& middle) const {
     return is_near((at(0) + at(3)) / 2.0) && is_near((at(1) + at(2)) / 2.0);
 }
 
-/// Colours as the mean of each sample's own.
-void SpreadContribution::add_colours_of_samples(MapTexels& texels) const {
+/// All that textures show as the mean of each sample's own; of normals the mean's direction and length.
+void SpreadContribution::set_means_of_samples(MapTexels& texels) const {
     const RayDifferential by_pixel = map_.differential(centroid_);
-    Vec3 base(0), emissive(0);
+    MapTexels sum{Vec3(0), Vec3(0), 0, 0, 0, Vec3(0), 0};
     std::size_t count = 0;
     for (std::size_t s = 0; s < sample_count(); ++s)
         if (const std::optional<SeenThere> there = at(place(s))) {
             const MapTexels own = texels_over(*there, square(1), by_pixel);
-            base += own.base;
-            emissive += own.emissive;
+            sum.base += own.base;
+            sum.emissive += own.emissive;
+            sum.roughness += own.roughness;
+            sum.metallic += own.metallic;
+            sum.occlusion += own.occlusion;
+            sum.normal += own.normal_length * own.normal;
             ++count;
         }
-    if (count == 0) return;
-    texels.base = base / double(count);
-    texels.emissive = emissive / double(count);
+    const double all = double(count), of_normals = length(sum.normal);
+    if (count == 0 || of_normals == 0) return;
+    texels = {sum.base / all,      sum.emissive / all,  sum.roughness / all, sum.metallic / all,
+              sum.occlusion / all, sum.normal / of_normals, of_normals / all};
 }
 
 std::vector<LitPart> SpreadContribution::parts(int step, const MapTexels& plain) const {

@@ -70,7 +70,7 @@ class SpreadContribution {
     MapTexels texels_over(const SeenThere& there, const std::array<Vec2, 2>& sides,
                           const RayDifferential& by_pixel) const;
     bool is_parallelogram(const SeenThere& middle) const;
-    void add_colours_of_samples(MapTexels& texels) const;
+    void set_means_of_samples(MapTexels& texels) const;
     /// Sides of what so many samples in a row, and as many rows, stand for.
     std::array<Vec2, 2> square(int samples) const {
         const double side = double(samples) / shading_.side;

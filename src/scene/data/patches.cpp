@@ -184,8 +184,7 @@ PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n) {
     PolygonMesh mesh;
     Box box;
     for (const RationalPatch& patch : patches) box.include(bounds_of(patch));
-    const Vec3 size = box.size();
-    const double tolerance = kSameControl * std::max({size.x, size.y, size.z});
+    const double tolerance = joint_tolerance(box);
     for (const RationalPatch& patch : patches) {
         const double extent = extent_of(patch);
         std::vector<PatchCorner> lattice;

@@ -37,10 +37,6 @@ Vec3 in_plane(const Vec3& v, const Vec3& normal) {
     return normalize_or_zero(v - dot(normal, v) * normal);
 }
 
-Vec3 any_along(const Vec3& normal) {
-    return in_plane(std::fabs(normal.x) < 0.75 ? Vec3(1, 0, 0) : Vec3(0, 1, 0), normal);
-}
-
 /// The corners of some triangles of a mesh, numbered triangle by triangle, in groups that share a tangent.
 class CornerGroups {
   public:
@@ -77,7 +73,7 @@ class CornerGroups {
         for (std::size_t k = 0; k < group_.size(); ++k) {
             const bool has_group = group_[k] != kNoNumber;
             Vec3 tangent = has_group ? in_plane(sum[group_[k]], normal_[k]) : Vec3(0);
-            if (tangent == Vec3(0)) tangent = any_along(normal_[k]);
+            if (tangent == Vec3(0)) tangent = unit_across(normal_[k]);
             result[k / 3][k % 3] = Vec4(tangent, has_group ? side_[group_[k]] : 1);
         }
         return result;
