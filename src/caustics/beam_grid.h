@@ -79,7 +79,7 @@ class BeamGrid {
 /// The path of that history; null: there is none.
 inline const LightPath* find_history(const std::vector<LightPath>& paths, const LightPath& like) {
     for (const LightPath& path : paths)
-        if (path.same_history(like)) return &path;
+        if (path.history() == like.history()) return &path;
     return nullptr;
 }
 

@@ -83,6 +83,13 @@ struct BeamLight::Piece {
     Way way;  // of the whole beam
 };
 
+/// What glass and blended surfaces leave of light on the way from the last optic.
+Vec3 BeamLight::left_of(const LightHistory& history, const Vec3& origin, const Receiver& receiver) const {
+    if (space_.veil && history.medium == kNone)
+        return Vec3(space_.veil({receiver.lifted, origin - receiver.lifted}).through);
+    return body_transmittance(*space_.optics, history.medium, length(origin - receiver.point));
+}
+
 /// Irradiance on the receiver's plane times the cosine that counts; none where nothing comes.
 std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& receiver) const {
     const std::optional<FootprintPart> here = part_at_footprint(piece.fallen, piece.plane);
@@ -106,8 +113,7 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& rece
         const Vec3 there = origin + t * direction + (receiver.lifted - receiver.point);
         if (is_hidden(piece, there, origin)) return std::nullopt;
     }
-    light *= body_transmittance(*space_.optics, beams_.histories[piece.beam.history].medium,
-                                length(origin - receiver.point));
+    light *= left_of(beams_.histories[piece.beam.history], origin, receiver);
     return here->density / piece.plane.unit_area * std::min(cosine / geometric, kMostTurned) * light;
 }
 
@@ -176,7 +182,8 @@ constexpr double kExact = 1e-11;
 
 bool is_known(const std::vector<ExactArrival>& known, const ExactArrival& one) {
     for (const ExactArrival& other : known)
-        if (other.single.path.same_history(one.single.path) && length(other.place - one.place) < kSameArrival)
+        if (other.single.path.history() == one.single.path.history() &&
+            length(other.place - one.place) < kSameArrival)
             return true;
     return false;
 }
@@ -204,12 +211,9 @@ std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) co
     tree_.for_each_near(receiver.point, kMostBent * tolerance_ * space_.size, [&](Id index) {
         const LightBeam& beam = beams_.beams[index];
         const FallenBeams fallen = fall(corners_of(beams_, beam), plane, INFINITY);
-        const BeamHistory& history = beams_.histories[beam.history];
-        LightPath like;
-        like.steps = history.steps, like.colours = history.colours, like.medium = history.medium;
         std::array<Vec2, 3> places;
         for (std::size_t k = 0; k < 3; ++k) places[k] = beams_.ends[beam.end[k]].place;
-        const ExactMap map{space_, source_, beams_.windows[beam.window], like};
+        const ExactMap map{space_, source_, beams_.windows[beam.window], beams_.histories[beam.history]};
         for (std::size_t i = 0; i < fallen.count; ++i) {
             std::array<Vec2, 3> corners;
             for (std::size_t k = 0; k < 3; ++k)
@@ -231,8 +235,7 @@ Vec3 BeamLight::exact_irradiance(const Receiver& receiver) const {
                      geometric = -dot(receiver.normal, arrival.single.path.ray.direction);
         if (!(cosine > 0)) continue;
         sum += arrival.density * std::min(cosine / geometric, kMostTurned) *
-               body_transmittance(*space_.optics, arrival.single.path.medium,
-                                  length(receiver.point - arrival.single.path.ray.origin)) *
+               left_of(arrival.single.path, arrival.single.path.ray.origin, receiver) *
                arrival.single.path.light;
     }
     return sum;

@@ -45,6 +45,15 @@ Vec3 beam_integral(const Beams& beams, const LightBeam& beam, const Of& of) {
     return beam.measure / 3 * sum;
 }
 
+using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<Id>, int, Id>;
+
+HistoryKey key_of(const LightHistory& history) {
+    std::vector<std::uint64_t> steps;
+    for (const Step& step : history.steps)
+        steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
+    return {std::move(steps), history.veils, history.colours, history.medium};
+}
+
 class BeamMaker {
   public:
     BeamMaker(const BeamGrid& grid, Beams& beams) : grid_(grid), beams_(beams) {}
@@ -53,7 +62,7 @@ class BeamMaker {
   private:
     using Key = std::tuple<Id, Id, Id>;  // inside, outside or kNone at a corner, history
 
-    Id history_of(const LightPath& path);
+    Id history_of(const LightHistory& path);
     const LightPath* path_at(Id corner, Id history) const;
     std::vector<Id> histories_of(const BeamGrid::Triangle& triangle) const;
     void find_borders();
@@ -66,20 +75,16 @@ class BeamMaker {
 
     const BeamGrid& grid_;
     Beams& beams_;
-    std::map<std::tuple<std::vector<std::uint64_t>, int, Id>, Id> history_;
+    std::map<HistoryKey, Id> history_;
     std::vector<std::vector<Id>> at_corner_;  // per corner and path: its history
     std::map<Key, Id> end_;
     std::map<Key, std::size_t> border_;
     std::vector<HistoryBorder> borders_;
 };
 
-Id BeamMaker::history_of(const LightPath& path) {
-    std::vector<std::uint64_t> steps;
-    for (const Step& step : path.steps)
-        steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
-    const auto [at, is_new] = history_.try_emplace({std::move(steps), path.colours, path.medium},
-                                                   static_cast<Id>(beams_.histories.size()));
-    if (is_new) beams_.histories.push_back({path.steps, path.colours, path.medium});
+Id BeamMaker::history_of(const LightHistory& path) {
+    const auto [at, is_new] = history_.try_emplace(key_of(path), static_cast<Id>(beams_.histories.size()));
+    if (is_new) beams_.histories.push_back(path);
     return at->second;
 }
 
@@ -229,15 +234,8 @@ void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
 }
 
 void BeamMaker::make() {
-    for (std::size_t i = 0; i < beams_.histories.size(); ++i) {
-        const BeamHistory& known = beams_.histories[i];
-        LightPath like;
-        like.steps = known.steps, like.colours = known.colours, like.medium = known.medium;
-        std::vector<std::uint64_t> steps;
-        for (const Step& step : known.steps)
-            steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
-        history_.emplace(std::tuple(std::move(steps), int{known.colours}, known.medium), static_cast<Id>(i));
-    }
+    for (std::size_t i = 0; i < beams_.histories.size(); ++i)
+        history_.emplace(key_of(beams_.histories[i]), static_cast<Id>(i));
     beams_.windows.push_back(grid_.window());
     at_corner_.resize(grid_.corner_count());
     for (Id corner = 0; corner < at_corner_.size(); ++corner)

@@ -38,17 +38,10 @@ struct LightBeam {
     Id window = 0;       // of Beams::windows
 };
 
-/// What all beams of a history have in common.
-struct BeamHistory {
-    std::vector<Step> steps;
-    Colours colours = kAllColours;
-    Id medium = kNone;
-};
-
 struct Beams {
     std::vector<BeamEnd> ends;
     std::vector<LightBeam> beams;
-    std::vector<BeamHistory> histories;
+    std::vector<LightHistory> histories;
     std::vector<LightWindow> windows;
     // Light that comes to the first optics, by what happens there.
     std::map<std::pair<Id, Event>, Vec3> arriving;

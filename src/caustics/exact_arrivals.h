@@ -21,7 +21,7 @@ struct ExactMap {
     const LightSpace& space;
     const BeamSource& source;
     const LightWindow& window;
-    const LightPath& like;  // its history
+    const LightHistory& like;
 
     /// Where the light from a place falls on the plane; none where the history is not, or goes away from it.
     std::optional<Vec2> fall(const Vec2& place, const ReceiverPlane& plane,

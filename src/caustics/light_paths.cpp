@@ -13,6 +13,22 @@ Vec3 share_at_first(const std::vector<Branch>& ways, const PathSegment& segment)
     return Vec3(0);
 }
 
+/// A part of a path in one medium.
+struct Stretch {
+    const Ray& ray;
+    double length = 0;
+    Id medium = kNone;
+};
+
+/// Takes from light what blended surfaces on a stretch keep, and adds their meshes to `veils`.
+void come_through(const LightSpace& space, const Stretch& stretch, Vec3& light, std::vector<Id>& veils) {
+    if (!space.veil || stretch.medium != kNone) return;
+    const Vec3 along = stretch.length * stretch.ray.direction;
+    const Veil veil = space.veil({stretch.ray.origin + along, -along});
+    light *= veil.through;
+    veils.insert(veils.end(), veil.meshes.begin(), veil.meshes.end());
+}
+
 }  // namespace
 
 LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first) {
@@ -29,18 +45,30 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     FollowedPaths followed = follow_paths(world, {met->meeting, met->distance, around}, params);
     found.cut = followed.cut;
     const std::vector<Branch> ways = branches(world, met->meeting, around, kAllColours);
-    const Vec3 arriving = source.strength(ray.direction) *
-                          body_transmittance(world, active_medium(world, around), met->distance);
-    std::vector<Vec3> share;  // at the first optic, per segment
+    const Id medium = active_medium(world, around);
+    Vec3 arriving = source.strength(ray.direction) * body_transmittance(world, medium, met->distance);
+    std::vector<Id> first_veils;
+    come_through(space, {ray, met->distance, medium}, arriving, first_veils);
+    std::vector<Vec3> share, left;  // per segment: at the first optic, and after veils behind that
     for (const PathSegment& segment : followed.segments) {
         LightPath path;
-        if (segment.parent != kNone) path.steps = found.paths[segment.parent].steps;
+        if (segment.parent == kNone) {
+            path.veils = first_veils;
+            share.push_back(share_at_first(ways, segment));
+            left.push_back(Vec3(1));
+        } else {
+            const PathSegment& before = followed.segments[segment.parent];
+            path.steps = found.paths[segment.parent].steps;
+            path.veils = found.paths[segment.parent].veils;
+            share.push_back(share[segment.parent]);
+            left.push_back(left[segment.parent]);
+            come_through(space, {before.ray, before.next, before.medium}, left.back(), path.veils);
+        }
         path.steps.push_back(segment.step);
-        share.push_back(segment.parent == kNone ? share_at_first(ways, segment) : share[segment.parent]);
         path.colours = segment.colours;
         path.medium = segment.medium;
         path.ray = segment.ray;
-        path.light = arriving * share.back() * segment.weight;
+        path.light = arriving * share.back() * segment.weight * left.back();
         path.arriving = arriving;
         if (path.colours != kAllColours) {
             path.arriving = Vec3(0);
@@ -65,7 +93,7 @@ const Branch* branch_of(const std::vector<Branch>& ways, const Step& step, Colou
 }  // namespace
 
 std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSource& source, const Ray& ray,
-                                         const LightPath& like) {
+                                         const LightHistory& like) {
     const PathWorld& world = *space.optics;
     LeavingRay leaving{ray, kNone, space.around ? space.around(ray) : Media{}};
     SinglePath single;
@@ -74,7 +102,9 @@ std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSour
     for (const Step& step : like.steps) {
         const std::optional<NextOptic> met = next_optic(world, leaving);
         if (!met || met->meeting.optic != step.optic) return std::nullopt;
-        path.light *= body_transmittance(world, active_medium(world, leaving.media), met->distance);
+        const Id medium = active_medium(world, leaving.media);
+        path.light *= body_transmittance(world, medium, met->distance);
+        come_through(space, {leaving.ray, met->distance, medium}, path.light, path.veils);
         if (path.steps.empty()) path.arriving = path.light;
         const std::vector<Branch> ways = branches(world, met->meeting, leaving.media, path.colours);
         const Branch* way = branch_of(ways, step, like.colours);
@@ -88,7 +118,7 @@ std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSour
     path.ray = leaving.ray;
     path.medium = active_medium(world, leaving.media);
     single.media = leaving.media;
-    if (!path.same_history(like)) return std::nullopt;
+    if (path.history() != like) return std::nullopt;
     return single;
 }
 

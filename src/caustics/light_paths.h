@@ -13,22 +13,32 @@
 
 namespace trilens {
 
-/// One stretch of a light's path, from the optic where it starts to where it would end.
-struct LightPath {
-    std::vector<Step> steps;  // meetings with optics up to its start, at least one
+/// Which way light went.
+struct LightHistory {
+    std::vector<Step> steps;  // meetings with optics up to its stretch's start, at least one
     Colours colours = kAllColours;
-    Id medium = kNone;  // in whose glass it runs; kNone: air
-    Ray ray;            // unit direction, from the last optic
-    Vec3 arriving{0};   // of its colours, at the first optic
-    Vec3 light{0};      // the source's strength and all that happened to it up to the ray's start
+    Id medium = kNone;        // in whose glass the stretch runs; kNone: air
+    std::vector<Id> veils{};  // meshes of blended surfaces that it came through before
+
+    bool operator==(const LightHistory&) const = default;
+};
+
+/// One stretch of a light's path, from the optic where it starts to where it would end.
+struct LightPath : LightHistory {
+    Ray ray;           // unit direction, from the last optic
+    Vec3 arriving{0};  // of its colours, at the first optic
+    Vec3 light{0};     // the source's strength and all that happened to it up to the ray's start
     double optic = std::numeric_limits<double>::infinity();  // way to the next optic
     double object =
         std::numeric_limits<double>::infinity();  // way to the first object, before the next optic
 
-    /// Whether both went the same way.
-    bool same_history(const LightPath& other) const {
-        return colours == other.colours && medium == other.medium && steps == other.steps;
-    }
+    const LightHistory& history() const { return *this; }
+};
+
+/// What surfaces that show a part of what lies behind leave of light.
+struct Veil {
+    double through = 1;      // a share
+    std::vector<Id> meshes;  // theirs, one by one along the light
 };
 
 /// What lights send their rays through.
@@ -37,6 +47,8 @@ struct LightSpace {
     const Tracer* objects = nullptr;    // that stop light
     /// The bodies of glass that a ray starts in; unset: none.
     std::function<Media(const Ray&)> around;
+    /// What is left of light on its way to the segment's origin, from t = 1; unset: nothing veils.
+    std::function<Veil(const Ray&)> veil;
     double size = 1;  // of the scene, world units
 };
 
@@ -55,10 +67,10 @@ struct SinglePath {
     Media media;                // that its last stretch is inside of
 };
 
-/// The path that has the history of `like`, however faint; none where the ray goes another way. Objects on
-/// its way are not asked.
+/// The path of that history, however faint; none where the ray goes another way. Opaque objects on its way
+/// are not asked.
 std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSource& source, const Ray& ray,
-                                         const LightPath& like);
+                                         const LightHistory& like);
 
 /// Whether no object stands on the way from the ray's origin over the optics up to the last of them.
 bool is_free(const LightSpace& space, const Ray& ray, const SinglePath& single);

@@ -104,15 +104,13 @@ void RefinedBeams::find_sides() {
 /// Where the history ends between, its border is as straight as the beam has it.
 BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const {
     const LightBeam& of = beams_->beams[beam];
-    const BeamHistory& history = beams_->histories[of.history];
+    const LightHistory& history = beams_->histories[of.history];
     const LightWindow& window = beams_->windows[of.window];
     BeamEnd end;
     end.place = 0.5 * (a.place + b.place);
     end.film = window.density(end.place);
-    LightPath like;
-    like.steps = history.steps, like.colours = history.colours, like.medium = history.medium;
     const Ray ray = window.ray(end.place);
-    if (const auto single = follow_history(space_, source_, ray, like)) {
+    if (const auto single = follow_history(space_, source_, ray, history)) {
         end.origin = single->path.ray.origin, end.direction = single->path.ray.direction;
         end.arriving = single->path.arriving;
         if (is_free(space_, ray, *single)) end.light = single->path.light;

@@ -119,8 +119,8 @@ void warn_of_appearance(Reading& reading) {
     if (blended && (has_caustics || has_glass))
         reading.warn(
             "/materials/" + std::to_string(*blended),
-            "blends with what is behind: such surfaces are not drawn inside of glass, and do not dim "
-            "light that comes over optics");
+            "blends with what is behind: such surfaces are not drawn inside of glass, and get no light that "
+            "comes over optics");
     const bool is_baked = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                       [](const Mesh& mesh) { return !mesh.object.baked.empty(); });
     if (needs_light && scene.lights.empty() && !is_baked)

@@ -9,6 +9,7 @@
 #include "render/picture/picture.h"
 #include "render/world/blended_surfaces.h"
 #include "support/draw.h"
+#include "support/lit_world.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -218,7 +219,38 @@ TEST_CASE("light through what blends is the product over all that it crosses, by
             ++crossed;
             if (sheet.both || at_to > 0) share *= 1 - sheet.alpha;  // the light, at `to`, is before its front
         }
-        CHECK(world->blended->let_through({from, to - from}) == Approx(share).epsilon(1e-12));
+        CHECK(world->blended->veil({from, to - from}).through == Approx(share).epsilon(1e-12));
     }
     CHECK(crossed > 200);
+}
+
+TEST_CASE("what blends dims light over optics, before them and behind, up to its very edge",
+          "[laws][law][caustics]") {
+    // A mirror in the plane z = -2: the lamp's image is at z = -7. Half of the light goes through a veil on
+    // its way there, all of it through smoke over the floor.
+    const std::string mirror = R"({"name": "mirror", "role": "optic", "material": "mirror", "resolution": 4,
+        "points": [[-2,0.2,-2],[2,0.2,-2],[2,3,-2],[-2,3,-2]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3],
+        "subdivisionScheme": "bilinear"})";
+    const std::string panes_over =
+        R"(, {"name": "half", "role": "object", "material": "veil", "points": [[0.05,0.1,0],[9,0.1,0],[9,9,0],[0.05,9,0]],
+             "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3]},
+            {"name": "all", "role": "object", "material": "smoke", "points": [[-6,0.1,3],[6,0.1,3],[6,0.1,-3],[-6,0.1,-3]],
+             "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3]})";
+    const LitWorld lit(lit_world(mirror + panes_over, kLamp));
+    Draw draw(12);
+    int veiled = 0, free = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Receiver there = on_floor(draw.uniform(-0.4, 0.4), draw.uniform(-1.4, -0.6));
+        const Vec3 way = Vec3(0, 4, -7) - there.point;
+        const double on_mirror = there.point.x + (-2 - there.point.z) / way.z * way.x;
+        const double beside = 0.6 * on_mirror - 0.05;  // of the veil's edge, where its light passes there
+        const double expected = 0.5 * (beside > 0 ? 0.75 : 1) * 10 * way.y / std::pow(length(way), 3);
+        ++(beside > 0 ? veiled : free);
+        CAPTURE(there.point.x, there.point.z, beside);
+        CHECK(lit.light().exact_irradiance(there).y == Approx(expected).epsilon(1e-7));
+        if (std::fabs(beside) > 0.001)
+            CHECK(lit.light().irradiance(there).y == Approx(expected).epsilon(0.02));
+    }
+    CHECK(veiled > 50);
+    CHECK(free > 50);
 }

@@ -78,11 +78,13 @@ std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const 
     return hits;
 }
 
-double BlendedSurfaces::let_through(const Ray& segment) const {
-    double share = 1;
-    for (const Hit& hit : crossings({segment.origin + segment.direction, -segment.direction}, 1))
-        share *= 1 - opacity_at(shading_, hit);
-    return share;
+Veil BlendedSurfaces::veil(const Ray& segment) const {
+    Veil veil;
+    for (const Hit& hit : crossings({segment.origin + segment.direction, -segment.direction}, 1)) {
+        veil.through *= 1 - opacity_at(shading_, hit);
+        veil.meshes.push_back(triangles_.object[hit.triangle]);
+    }
+    return veil;
 }
 
 std::vector<VolumeLight> BlendedSurfaces::shade(const Ray& ray, std::span<const Hit> crossings) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/raymesh/ray_mesh.h"
+#include "caustics/light_paths.h"
 #include "intersect/box_tree.h"
 #include "render/world/world.h"
 #include "volume/volume_integral.h"
@@ -28,9 +29,9 @@ class BlendedSurfaces {
     /// where two of one t meet along an edge, one of them. Surfaces of one side count where that is seen.
     std::vector<Hit> crossings(const Ray& ray, double until) const;
 
-    /// The share of light that comes from the segment's end, t = 1, to its start: the surfaces between are
-    /// what is seen of them from there.
-    double let_through(const Ray& segment) const;
+    /// What comes of light from the segment's end, t = 1, to its start: the surfaces between are what is seen
+    /// of them from that end.
+    Veil veil(const Ray& segment) const;
 
     /// What each of them adds: its colour in proportion to its opacity over what lies behind.
     std::vector<VolumeLight> shade(const Ray& ray, std::span<const Hit> crossings) const;

@@ -159,6 +159,8 @@ std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, con
     space.optics = &optics;
     space.objects = &object_tracer(world);
     space.size = size_of(world, outlines);
+    if (world.blended)
+        space.veil = [&blended = *world.blended](const Ray& segment) { return blended.veil(segment); };
     std::vector<std::unique_ptr<BeamLight>> lights;
     for (const BeamSource& source : sources) {
         space.around = {};

@@ -257,7 +257,7 @@ void set_up_shading(World& world) {
     world.shading.let_through = {};
     if (world.blended && has_shadows(world))
         world.shading.let_through = [self = &world](const Ray& segment) {
-            return self->blended->let_through(segment);
+            return self->blended->veil(segment).through;
         };
     if (world.blended) world.blended->set_up(world.shading);
     if (!has_caustics(world)) return;
