@@ -11,13 +11,13 @@ Alhazen's problem, CVPR 2011).
 import argparse
 import json
 import pathlib
-import time
 
 import numpy as np
 
 import trilens
 from inverse_others import (row_ball_beside_omnidir, row_fisheye_beside_opencv,  # noqa: F401
                             row_unwrap_beside_pfspanoramic)
+from timed_command import best_of
 
 FILM = {"width": 1024, "height": 768}
 CAMERA = {"name": "main", "type": "perspective", "yfov": 40, "lookAt": {"eye": [0.2, 0.3, 4.5], "at": [0, 0, 0]}}
@@ -68,15 +68,6 @@ def points_around(count, seed=1):
     draw = np.random.default_rng(seed)
     way = draw.normal(size=(count, 3))
     return way / np.linalg.norm(way, axis=1)[:, None] * draw.uniform(1.8, 6, (count, 1))
-
-
-def best_of(work, times=3):
-    least, answer = np.inf, None
-    for _ in range(times):
-        start = time.process_time()
-        answer = work()
-        least = min(least, time.process_time() - start)
-    return least, answer
 
 
 def last_rays(renderer, images, path):

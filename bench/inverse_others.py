@@ -4,11 +4,11 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
-import time
 
 import numpy as np
 
 import trilens
+from timed_command import best_of
 
 CHROME = {"name": "chrome", "metallicFactor": 1, "roughnessFactor": 0}
 BALL = {"name": "ball", "role": "optic", "material": "chrome",
@@ -19,15 +19,6 @@ def scene_of(camera, film, meshes):
     return trilens.Renderer(trilens.parse_scene(
         {"version": 1, "film": dict(zip(("width", "height"), film)), "cameras": [camera], "materials": [CHROME],
          "meshes": meshes, "render": {"maxDepth": 0}}, warn=lambda message: None))
-
-
-def processor_time(work, times=3):
-    least, answer = np.inf, None
-    for _ in range(times):
-        start = time.process_time()
-        answer = work()
-        least = min(least, time.process_time() - start)
-    return least, answer
 
 
 def skipped(what, package):
@@ -97,7 +88,7 @@ def row_unwrap_beside_pfspanoramic(count):
 
     theirs = off(np.stack([(places[..., 0] + 1) / 2 * side, (1 - places[..., 1]) / 2 * side], axis=2), inside)
     # The panorama's middle is -Z in trilens, and its right half +X: seen from the other side.
-    seconds, own = processor_time(lambda: renderer.map(f"equirect:{PANORAMA[0]}x{PANORAMA[1]}", proxy="infinity"), 1)
+    seconds, own = best_of(lambda: renderer.map(f"equirect:{PANORAMA[0]}x{PANORAMA[1]}", proxy="infinity"), 1)
     turn = np.roll(np.arange(PANORAMA[0])[::-1], PANORAMA[0] // 2)
     pixels = np.stack([own["x"], own["y"]], axis=2)[:, turn]
     ours = off(pixels, own["valid"][:, turn])
@@ -123,8 +114,8 @@ def row_fisheye_beside_opencv(count):
     angle, around = draw.uniform(0.05, 1.1, count), draw.uniform(0, 2 * np.pi, count)
     points = draw.uniform(1, 5, (count, 1)) * np.stack(
         [np.sin(angle) * np.cos(around), np.sin(angle) * np.sin(around), np.cos(angle)], axis=1)
-    seconds, images = processor_time(lambda: renderer.project(points, visibility=False))
-    theirs, seen = processor_time(lambda: cv2.fisheye.projectPoints(
+    seconds, images = best_of(lambda: renderer.project(points, visibility=False))
+    theirs, seen = best_of(lambda: cv2.fisheye.projectPoints(
         points[:, None], np.zeros(3), np.zeros(3), matrix, distortion)[0][:, 0])
     images = images[images["path"] == "direct"]
     error = np.abs(np.stack([images["x"], images["y"]], axis=1) - seen[images["point"]]).max()
@@ -161,6 +152,6 @@ def row_ball_beside_omnidir(count):
     central = min(np.sqrt(2 * np.mean(one.fun ** 2)) for one in found)
     free = ["/meshes/0/primitive/center", "/meshes/0/primitive/radius"]
     scene = renderer.scene.with_overrides({"/meshes/0/primitive/radius": 0.95})
-    seconds, fit = processor_time(lambda: trilens.fit(scene, pixels, points, free))
+    seconds, fit = best_of(lambda: trilens.fit(scene, pixels, points, free))
     return {"what": what, "us": 1e6 * seconds, "error": fit.rms, "unit": "px rms left by fit",
             "note": f"{len(points)} pairs; cv2.omnidir's model, 15 numbers free: {central:.2g} px rms"}

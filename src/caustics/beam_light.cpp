@@ -32,7 +32,7 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
     : space_(space), source_(source), tolerance_(params.tolerance) {
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         if (outlines[i].empty()) continue;
-        for (const LightWindow& window : windows_on(source, outlines[i], space.size)) {
+        for (const LightWindow& window : windows_on(source, outlines[i], space.reach)) {
             BeamGrid grid(space, source, window, static_cast<Id>(i));
             grid.divide(params, progress);
             losses_.coarse += grid.coarse_count();

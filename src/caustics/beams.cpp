@@ -45,7 +45,7 @@ Vec3 beam_integral(const Beams& beams, const LightBeam& beam, const Of& of) {
     return beam.measure / 3 * sum;
 }
 
-using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<Id>, int, Id>;
+using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<VeilSurface>, int, Id>;
 
 HistoryKey key_of(const LightHistory& history) {
     std::vector<std::uint64_t> steps;

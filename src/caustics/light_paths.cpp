@@ -20,13 +20,32 @@ struct Stretch {
     Id medium = kNone;
 };
 
-/// Takes from light what blended surfaces on a stretch keep, and adds their meshes to `veils`.
-void come_through(const LightSpace& space, const Stretch& stretch, Vec3& light, std::vector<Id>& veils) {
+/// Takes from light what blended surfaces on a stretch keep, and adds them to `veils`.
+void come_through(const LightSpace& space, const Stretch& stretch, Vec3& light,
+                  std::vector<VeilSurface>& veils) {
     if (!space.veil || stretch.medium != kNone) return;
     const Vec3 along = stretch.length * stretch.ray.direction;
     const Veil veil = space.veil({stretch.ray.origin + along, -along});
     light *= veil.through;
-    veils.insert(veils.end(), veil.meshes.begin(), veil.meshes.end());
+    veils.insert(veils.end(), veil.surfaces.begin(), veil.surfaces.end());
+}
+
+/// The path that goes on by a segment; its light is not known yet.
+LightPath continued(LightHistory so_far, const PathSegment& segment, const Vec3& arriving) {
+    LightPath path;
+    static_cast<LightHistory&>(path) = std::move(so_far);
+    path.steps.push_back(segment.step);
+    path.colours = segment.colours;
+    path.medium = segment.medium;
+    path.ray = segment.ray;
+    path.arriving = arriving;
+    if (path.colours != kAllColours) {
+        path.arriving = Vec3(0);
+        path.arriving[path.colours] = arriving[path.colours];
+    }
+    path.optic = segment.next;
+    if (segment.hit.seen()) path.object = segment.hit.t;
+    return path;
 }
 
 }  // namespace
@@ -47,36 +66,22 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     const std::vector<Branch> ways = branches(world, met->meeting, around, kAllColours);
     const Id medium = active_medium(world, around);
     Vec3 arriving = source.strength(ray.direction) * body_transmittance(world, medium, met->distance);
-    std::vector<Id> first_veils;
+    std::vector<VeilSurface> first_veils;
     come_through(space, {ray, met->distance, medium}, arriving, first_veils);
-    std::vector<Vec3> share, left;  // per segment: at the first optic, and after veils behind that
+    std::vector<Vec3> carried;  // per segment: its share at the first optic, less what veils behind it keep
     for (const PathSegment& segment : followed.segments) {
-        LightPath path;
+        LightHistory so_far;
         if (segment.parent == kNone) {
-            path.veils = first_veils;
-            share.push_back(share_at_first(ways, segment));
-            left.push_back(Vec3(1));
+            so_far.veils = first_veils;
+            carried.push_back(share_at_first(ways, segment));
         } else {
             const PathSegment& before = followed.segments[segment.parent];
-            path.steps = found.paths[segment.parent].steps;
-            path.veils = found.paths[segment.parent].veils;
-            share.push_back(share[segment.parent]);
-            left.push_back(left[segment.parent]);
-            come_through(space, {before.ray, before.next, before.medium}, left.back(), path.veils);
+            so_far = found.paths[segment.parent];
+            carried.push_back(carried[segment.parent]);
+            come_through(space, {before.ray, before.next, before.medium}, carried.back(), so_far.veils);
         }
-        path.steps.push_back(segment.step);
-        path.colours = segment.colours;
-        path.medium = segment.medium;
-        path.ray = segment.ray;
-        path.light = arriving * share.back() * segment.weight * left.back();
-        path.arriving = arriving;
-        if (path.colours != kAllColours) {
-            path.arriving = Vec3(0);
-            path.arriving[path.colours] = arriving[path.colours];
-        }
-        path.optic = segment.next;
-        if (segment.hit.seen()) path.object = segment.hit.t;
-        found.paths.push_back(std::move(path));
+        found.paths.push_back(continued(std::move(so_far), segment, arriving));
+        found.paths.back().light = arriving * carried.back() * segment.weight;
     }
     return found;
 }

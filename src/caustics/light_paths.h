@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "caustics/light_window.h"
@@ -13,12 +14,15 @@
 
 namespace trilens {
 
+/// A blended surface: its mesh, and its material.
+using VeilSurface = std::pair<Id, Id>;
+
 /// Which way light went.
 struct LightHistory {
     std::vector<Step> steps;  // meetings with optics up to its stretch's start, at least one
     Colours colours = kAllColours;
-    Id medium = kNone;        // in whose glass the stretch runs; kNone: air
-    std::vector<Id> veils{};  // meshes of blended surfaces that it came through before
+    Id medium = kNone;                 // in whose glass the stretch runs; kNone: air
+    std::vector<VeilSurface> veils{};  // blended surfaces that it came through before
 
     bool operator==(const LightHistory&) const = default;
 };
@@ -37,8 +41,8 @@ struct LightPath : LightHistory {
 
 /// What surfaces that show a part of what lies behind leave of light.
 struct Veil {
-    double through = 1;      // a share
-    std::vector<Id> meshes;  // theirs, one by one along the light
+    double through = 1;                 // a share
+    std::vector<VeilSurface> surfaces;  // one by one along the light
 };
 
 /// What lights send their rays through.
@@ -49,7 +53,8 @@ struct LightSpace {
     std::function<Media(const Ray&)> around;
     /// What is left of light on its way to the segment's origin, from t = 1; unset: nothing veils.
     std::function<Veil(const Ray&)> veil;
-    double size = 1;  // of the scene, world units
+    double size = 1;   // of the scene, world units
+    double reach = 1;  // from an optic to anything that stops or veils light, at most; no less than `size`
 };
 
 struct LightPaths {

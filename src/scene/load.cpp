@@ -109,18 +109,14 @@ void warn_of_appearance(Reading& reading) {
         if (i >= scene.materials.size()) continue;
         needs_light = needs_light || !scene.materials[i].unlit;
     }
-    const bool has_caustics = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                          [](const Light& light) { return light.caustics; });
     const auto is_glass = [&](const Mesh& mesh) {
         return mesh.role == Role::kOptic && scene.materials[mesh.material].transmission_factor == 1;
     };
     const bool has_glass = std::any_of(scene.meshes.begin(), scene.meshes.end(), is_glass);
     const std::optional<Id> blended = first_that_blends(scene);
-    if (blended && (has_caustics || has_glass))
-        reading.warn(
-            "/materials/" + std::to_string(*blended),
-            "blends with what is behind: such surfaces are not drawn inside of glass, and get no light that "
-            "comes over optics");
+    if (blended && has_glass)
+        reading.warn("/materials/" + std::to_string(*blended),
+                     "blends with what is behind: such surfaces are not drawn inside of glass");
     const bool is_baked = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                       [](const Mesh& mesh) { return !mesh.object.baked.empty(); });
     if (needs_light && scene.lights.empty() && !is_baked)

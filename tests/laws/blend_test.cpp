@@ -254,3 +254,58 @@ TEST_CASE("what blends dims light over optics, before them and behind, up to its
     CHECK(veiled > 50);
     CHECK(free > 50);
 }
+
+TEST_CASE("a pane far beyond the scene dims parallel light over optics, too", "[laws][law][caustics]") {
+    const std::string mirror = R"({"name": "mirror", "role": "optic", "material": "mirror", "resolution": 4,
+        "points": [[-2,0.2,-2],[2,0.2,-2],[2,3,-2],[-2,3,-2]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3],
+        "subdivisionScheme": "bilinear"})";
+    const auto pane_at = [](double y) {
+        return R"(, {"name": "pane", "role": "object", "material": "smoke", "primitive": {"type": "plane",
+            "center": [0, )" +
+               std::to_string(y) +
+               R"(, 0], "normal": [0, 1, 0], "tangent": [1, 0, 0], "size": [4000, 4000]}})";
+    };
+    const std::string sun =
+        R"({"type": "directional", "direction": [0, -1, -1], "intensity": 3, "caustics": true})";
+    const LitWorld free(lit_world(mirror, sun));
+    const Receiver there = on_floor(0.2, -1);
+    const double light = free.light().irradiance(there).y;
+    CHECK(light == Approx(3 * std::sqrt(0.5)).epsilon(0.01));
+    for (const double y : {4.0, 20.0, 300.0}) {
+        const LitWorld dimmed(lit_world(mirror + pane_at(y), sun));
+        CHECK(dimmed.light().irradiance(there).y == Approx(0.5 * light).epsilon(1e-6));
+        CHECK(dimmed.light().exact_irradiance(there).y == Approx(0.5 * light).epsilon(0.01));
+    }
+}
+
+TEST_CASE("what blends is lit over optics as what is opaque", "[laws][law][caustics]") {
+    // A floor that hides all but a millionth, and the opaque one, in a mirror's light; a veil far below makes
+    // both be shaded sample by sample.
+    const auto lit = [](const std::string& floor, bool caustics) {
+        return world_from("lit",
+                          R"({"version": 1, "film": {"width": 24, "height": 18},
+            "cameras": [{"name": "main", "yfov": 30,
+                         "lookAt": {"eye": [0, 3, 1.5], "at": [0, 0, -1], "up": [0, 1, 0]}}],
+            "materials": [{"name": "opaque", "baseColorFactor": [0.8, 0.8, 0.8]}, {"name": "mirror", "metallicFactor": 1},
+                {"name": "blend", "baseColorFactor": [0.8, 0.8, 0.8], "alphaMode": "blend", "alphaFactor": 0.999999},
+                {"name": "veil", "alphaMode": "blend", "alphaFactor": 0.25}],
+            "meshes": [{"name": "floor", "role": "object", "material": ")" +
+                              floor + R"(", "primitive": {"type": "plane",
+                         "center": [0, 0, 0], "normal": [0, 1, 0], "tangent": [1, 0, 0], "size": [20, 20]}},
+                {"name": "below", "role": "object", "material": "veil", "primitive": {"type": "plane",
+                         "center": [0, -9, 0], "normal": [0, 1, 0], "tangent": [1, 0, 0], "size": [20, 20]}},
+                {"name": "mirror", "role": "optic", "material": "mirror", "resolution": 4,
+                 "points": [[-2,0.2,-2],[2,0.2,-2],[2,3,-2],[-2,3,-2]], "faceVertexCounts": [4],
+                 "faceVertexIndices": [0,1,2,3], "subdivisionScheme": "bilinear"}],
+            "lights": [{"type": "point", "position": [0, 4, 3], "intensity": 10, "shadows": true, "caustics": )" +
+                              (caustics ? "true" : "false") + "}]}",
+                          4);
+    };
+    for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
+        const double dark = mean_green(drawn_by(*lit("opaque", false), 2, engine)),
+                     opaque = mean_green(drawn_by(*lit("opaque", true), 2, engine)),
+                     blended = mean_green(drawn_by(*lit("blend", true), 2, engine));
+        CHECK(opaque > 1.05 * dark);
+        CHECK(blended == Approx(opaque).epsilon(0.01));
+    }
+}

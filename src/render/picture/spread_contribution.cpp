@@ -202,10 +202,12 @@ void SpreadContribution::set_means_of_samples(MapTexels& texels) const {
             sum.normal += own.normal_length * own.normal;
             ++count;
         }
+    if (count == 0) return;
     const double all = double(count), of_normals = length(sum.normal);
-    if (count == 0 || of_normals == 0) return;
-    texels = {sum.base / all,      sum.emissive / all,  sum.roughness / all, sum.metallic / all,
-              sum.occlusion / all, sum.normal / of_normals, of_normals / all};
+    // Normals that leave none in the mean turn nowhere else.
+    if (of_normals > 0) texels.normal = sum.normal / of_normals;
+    texels = {sum.base / all,      sum.emissive / all, sum.roughness / all, sum.metallic / all,
+              sum.occlusion / all, texels.normal,      of_normals / all};
 }
 
 std::vector<LitPart> SpreadContribution::parts(int step, const MapTexels& plain) const {

@@ -40,7 +40,11 @@ BlendedSurfaces::BlendedSurfaces(TriangleScene triangles, ShadeScene shading)
 
 void BlendedSurfaces::set_up(const ShadeSurroundings& others) {
     static_cast<ShadeSurroundings&>(shading_) = others;
-    shading_.caustic = {};
+    if (!others.caustic) return;
+    shading_.caustic = [caustic = others.caustic](std::size_t light, Receiver receiver) {
+        receiver.triangle = kNone;
+        return caustic(light, receiver);
+    };
 }
 
 bool BlendedSurfaces::is_seen_by(const Ray& ray, Id triangle) const {
@@ -82,7 +86,7 @@ Veil BlendedSurfaces::veil(const Ray& segment) const {
     Veil veil;
     for (const Hit& hit : crossings({segment.origin + segment.direction, -segment.direction}, 1)) {
         veil.through *= 1 - opacity_at(shading_, hit);
-        veil.meshes.push_back(triangles_.object[hit.triangle]);
+        veil.surfaces.emplace_back(triangles_.object[hit.triangle], shading_.material[hit.triangle]);
     }
     return veil;
 }

@@ -19,8 +19,7 @@ class BlendedSurfaces {
     BlendedSurfaces(const BlendedSurfaces&) = delete;
     BlendedSurfaces& operator=(const BlendedSurfaces&) = delete;
 
-    /// Takes over lights, materials and shadows from the shading of the other objects. Light that comes over
-    /// optics is not followed to blended surfaces.
+    /// Takes over lights, materials and shadows from the shading of the other objects.
     void set_up(const ShadeSurroundings& others);
 
     const TriangleScene& triangles() const { return triangles_; }

@@ -8,6 +8,7 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "paths/trace/path_world.h"
+#include "render/world/blended_surfaces.h"
 #include "shade/lights/light_sample.h"
 #include "surfaces/surfaces.h"
 
@@ -25,12 +26,13 @@ std::vector<Vec3> outline_points(const Surface& surface) {
     return make_grid(surface, std::clamp(static_cast<int>(std::sqrt(per_face)), 2, 24)).points;
 }
 
-double size_of(const World& world, const std::vector<std::vector<Vec3>>& outlines) {
+/// The box of what stops light and what sends it on.
+Box box_of(const World& world, const std::vector<std::vector<Vec3>>& outlines) {
     Box box;
     for (const Vec3& point : world.objects.points) box.include(point);
     for (const auto& outline : outlines)
         for (const Vec3& point : outline) box.include(point);
-    return length(box.size());
+    return box;
 }
 
 }  // namespace
@@ -158,9 +160,13 @@ std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, con
     LightSpace space;
     space.optics = &optics;
     space.objects = &object_tracer(world);
-    space.size = size_of(world, outlines);
-    if (world.blended)
+    Box box = box_of(world, outlines);
+    space.size = space.reach = length(box.size());
+    if (world.blended) {
         space.veil = [&blended = *world.blended](const Ray& segment) { return blended.veil(segment); };
+        for (const Vec3& point : world.blended->triangles().points) box.include(point);
+        space.reach = length(box.size());
+    }
     std::vector<std::unique_ptr<BeamLight>> lights;
     for (const BeamSource& source : sources) {
         space.around = {};

@@ -259,11 +259,11 @@ void set_up_shading(World& world) {
         world.shading.let_through = [self = &world](const Ray& segment) {
             return self->blended->veil(segment).through;
         };
+    if (has_caustics(world))
+        world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {
+            return irradiance(caustic_lights(*self).by_light[light], receiver);
+        };
     if (world.blended) world.blended->set_up(world.shading);
-    if (!has_caustics(world)) return;
-    world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {
-        return irradiance(caustic_lights(*self).by_light[light], receiver);
-    };
 }
 
 /// The scene's volumes, those that the world has already as they are.
