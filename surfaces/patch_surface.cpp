@@ -224,17 +224,17 @@ SurfaceBounds patch_bounds(const RationalPatch& patch, const SurfacePoint& middl
         return quotients(part.in_box(derivative(derivative(part.whole, one), other)));
     };
     const Quotients position = quotients(part.a), u = quotients(part.a_u), v = quotients(part.a_v);
-    const auto [by_place, by_first, by_second] = rounding_of(patch, middle.position);
+    const std::array<double, 3> rounding = rounding_of(patch, middle.position);  // by order of derivative
     const double far = position.farthest(Vec3(0));
 
     SurfaceBounds bounds;
     bounds.middle = middle;
-    bounds.position_radius = far + by_place;
-    bounds.du_radius = u.farthest(middle.du) + far * u.largest() + by_first;
-    bounds.dv_radius = v.farthest(middle.dv) + far * v.largest() + by_first;
+    bounds.position_radius = far + rounding[0];
+    bounds.du_radius = u.farthest(middle.du) + far * u.largest() + rounding[1];
+    bounds.dv_radius = v.farthest(middle.dv) + far * v.largest() + rounding[1];
     // P_uv = A_uv / w - P_u w_v / w - P_v w_u / w - P w_uv / w.
     const auto radius = [&](const Quotients& of, const Vec3& value, double products, const Vec3& moved) {
-        return of.farthest(value + moved) + products + far * of.largest() + by_second;
+        return of.farthest(value + moved) + products + far * of.largest() + rounding[2];
     };
     bounds.duu_radius = radius(second(0, 0), middle.duu, 2 * product_radius(middle.du, bounds.du_radius, u),
                                2 * u.middle() * middle.du);
@@ -245,8 +245,8 @@ SurfaceBounds patch_bounds(const RationalPatch& patch, const SurfacePoint& middl
     bounds.dvv_radius = radius(second(1, 1), middle.dvv, 2 * product_radius(middle.dv, bounds.dv_radius, v),
                                2 * v.middle() * middle.dv);
 
-    const Tangents tangents{u.points(), v.points(), far * u.largest() + by_first,
-                            far * v.largest() + by_first};
+    const Tangents tangents{u.points(), v.points(), far * u.largest() + rounding[1],
+                            far * v.largest() + rounding[1]};
     double turn = normal_radius({tangents.u, tangents.v, tangents.u_slack, tangents.v_slack}, middle.normal);
     for (std::size_t side = 0; side < 4; ++side)
         if (is_collapsed(patch, side))

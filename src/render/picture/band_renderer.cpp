@@ -310,7 +310,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
 
 Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
                   const LayerOutput& output) {
-    const auto& [statistics, sink, marks] = output;
+    const auto& sink = output.sink;  // no structured binding: Clang 14 does not capture one
     const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
     const bool by_fragments = makes_fragments(world, viewer, request, side);
     const int rows =
@@ -333,7 +333,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
-    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage(), marks};
+    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage(), output.marks};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {
@@ -353,7 +353,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
         progress(static_cast<double>(band[slot].grid.y1 - request.y0) / height);
     };
     run_pipeline(bands, slots, stages);
-    if (statistics) *statistics = counts;
+    if (output.statistics) *output.statistics = counts;
     return sink ? empty_image(world, request) : canvases[0].take();
 }
 
