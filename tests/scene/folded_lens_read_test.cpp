@@ -231,6 +231,14 @@ TEST_CASE("Q-type aspheres of JSON are normalised by their own radius, or by the
     CHECK(alone.normal_departures == mild.normal_departures);
     CHECK_THROWS_WITH(parse_lens_side(R"({"aperture": 5, "conic": -1, "qbfs": [1]})", "front"),
                       "front: /qbfs: departs from a sphere: the side's conic must be 0");
+    CHECK_THROWS_WITH(
+        load_text(R"({"version": 1, "film": {"width": 8, "height": 8},
+        "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 0, 4], "at": [0, 0, 0]}}],
+        "materials": [{"name": "glass", "transmissionFactor": 1}],
+        "meshes": [{"name": "lens", "role": "optic", "material": "glass", "primitive": {"type": "lens", "thickness": 0.5,
+            "front": {"radius": 3, "conic": -1, "aperture": 1, "qbfs": [0.01]}, "back": {"aperture": 1}}}]})"),
+        Catch::Matchers::Contains(
+            ": /meshes/0/primitive/front/qbfs: departs from a sphere: the side's conic must be 0"));
 }
 
 TEST_CASE("a scene has a telescope's mirrors as bodies of chrome, and says which holes it leaves out",

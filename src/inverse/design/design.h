@@ -47,7 +47,7 @@ struct HeightField {
 /// Larger of the principal curvatures' sizes, 1 / length.
 double largest_curvature(const Height& at);
 
-// A wish: what an eye is to see in a mirror, place by place.
+// A wish: what an eye is to see in a mirror or through a lens, place by place.
 
 /// kPlane: a rectangle in the world without distortion. kEquirectangular: directions of equal angles,
 /// longitude over x and latitude over y. kMap: a grid of world points or directions.
@@ -60,14 +60,15 @@ struct EnumNames<WishType> {
                                        NamedValue<WishType>{WishType::kMap, "map"}};
 };
 
-/// What is wanted at (s, t), 0..1 each over the mirror as the eye sees it: its perspective onto the plane
-/// through the rectangle's middle at right angles to the view, s along the tangent and t upward there, each
-/// over the rectangle's foreshortened side.
+/// What is wanted at (s, t), 0..1 each over the mirror or lens as the eye sees it: its perspective onto the
+/// plane through the rectangle's middle at right angles to the view, s along the tangent and t upward there,
+/// each over the rectangle's foreshortened side.
 struct WishMap {
     WishType type = WishType::kPlane;
     Vec3 origin{0}, u{1, 0, 0}, v{0, 1, 0};  // kPlane: the point origin + s u + t v, world
     /// kEquirectangular: longitudes and latitudes in degrees at s, t = 0 and 1: west, south, east, north. 0,
-    /// 0 is the mirror's normal; longitude turns towards the tangent, latitude towards normal x tangent.
+    /// 0 is the mirror's normal, of a lens its opposite; longitude turns towards the tangent, latitude
+    /// towards normal x tangent.
     std::array<double, 4> window{-45, -45, 45, 45};
     std::string file;            // kMap: of an EXR with channels X, Y, Z, its top row at t = 1
     bool is_directions = false;  // kMap: else points
@@ -75,7 +76,7 @@ struct WishMap {
     std::vector<Vec3> values;    // kMap: rows from t = 0 up, its first at s = 0, the last at s = 1
 };
 
-/// The rectangle under a mirror.
+/// The rectangle under the surface that is designed.
 struct MirrorPatch {
     Vec3 center{0};
     Vec3 normal{0, 0, 1};                 // any length but 0; towards the eye's side
@@ -96,7 +97,7 @@ struct DesignWish {
     MirrorPatch patch;
     std::optional<DesignLens> lens;  // none: a mirror
     WishMap wish;
-    Vec2 anchor{0};  // where on the rectangle, from its middle, the mirror stays in it
+    Vec2 anchor{0};  // where on the rectangle, from its middle, the surface stays in it
     double fairness =
         1e-7;  // >= 0: of the mean squared change of slope over the rectangle, against squared angles
     std::array<int, 2> samples{40, 40};  // along both, 4..400
@@ -111,8 +112,8 @@ DesignWish parse_wish(const std::string& text, const std::string& name, const st
 std::string wish_schema();
 std::string wish_example();
 
-/// Throws InputError(name, place) for what no mirror can have: numbers out of range, an eye behind the
-/// rectangle, a wished ray that goes into the mirror.
+/// Throws InputError(name, place) for what no mirror or lens can have: numbers out of range, an eye behind
+/// the rectangle, a wished ray that goes into the mirror or does not leave the lens' back.
 void check_wish(const DesignWish& wish, const std::string& name = "wish");
 
 /// "mirror" or "lens": what the wish is of.
@@ -156,9 +157,9 @@ class WishedRays {
     Vec3 eye_{0};
 };
 
-// Freeform mirrors for a wanted map: the surface whose reflections come nearest to a wish.
+// Freeform mirrors and lenses for a wanted map: the surface whose rays come nearest to a wish.
 
-/// How far reflected rays are from the wished ones, degrees, over samples of the rectangle.
+/// How far reflected or refracted rays are from the wished ones, degrees, over samples of the rectangle.
 struct DesignErrors {
     double mean = 0, p95 = 0, max = 0;
 };

@@ -118,8 +118,8 @@ struct WarpMesh {
     WarpGrid grid = WarpGrid::kFilm;
     int columns = 0, rows = 0;  // nodes
     int film_width = 0, film_height = 0, target_width = 0, target_height = 0;
-    std::vector<WarpNode>
-        nodes;  // row by row: from the film's or the picture's top, or from the middle outward
+    // Row by row: from the film's or the picture's top, or from the middle outward.
+    std::vector<WarpNode> nodes;
 
     const WarpNode& at(int x, int y) const {
         return nodes[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -128,9 +128,9 @@ struct WarpMesh {
     std::size_t drawn_count() const;  // nodes with intensity > 0
 
     /// How far what programs draw in a cell lies from exact rays, whether they interpolate bilinearly or on
-    /// two triangles, whichever the diagonal: over cells whose nodes are all drawn, or some
-    /// 50,000 of them, evenly spread. In pixels of the target;
-    /// of a mesh that is regular there (kTarget) in pixels of the film.
+    /// two triangles, whichever the diagonal: over cells whose nodes are all drawn, or some 50,000 of them,
+    /// evenly spread. In pixels of the target; of a mesh that is regular there (kTarget) in pixels of the
+    /// film.
     double error_mean = 0, error_p99 = 0, error_max = 0;
 };
 

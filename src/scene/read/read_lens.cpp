@@ -72,13 +72,16 @@ LensSide side_of(const WrittenSide& written, const Node& node) {
     add_terms(node.json, "normalDepartures", side.normal_departures);
     add_q_terms(node, "qcon", written, qcon_coefficients, side.coefficients);
     add_q_terms(node, "qbfs", written, qbfs_departures, side.normal_departures);
-    if (written.conic != 0)
-        for (const char* key : {"qbfs", "normalDepartures"})
-            if (node.has(key)) node[key].fail("departs from a sphere: the side's conic must be 0");
     return side;
 }
 
 }  // namespace
+
+void check_lens_side(const Node& side) {
+    if (!side.has("conic") || side["conic"].json.get<double>() == 0) return;
+    for (const char* key : {"qbfs", "normalDepartures"})
+        if (side.has(key)) side[key].fail("departs from a sphere: the side's conic must be 0");
+}
 
 void from_json_value(const Json& json, LensSide& side) {
     WrittenSide written;
@@ -232,6 +235,7 @@ LensPrescription read_surfaces(const Node& surfaces, std::span<const Glass> glas
         WrittenRow written;
         read_fields(node, row_fields(), written);
         LensRow& row = lens.rows.emplace_back();
+        check_lens_side(node);
         row.side = side_of(written.side, node);
         row.thickness = written.thickness;
         row.stop = written.stop;
@@ -272,10 +276,10 @@ LensPrescription parse_lens_json(const std::string& bytes, const std::string& fi
 
 LensSide parse_side(const std::string& bytes, const std::string& file) {
     const Json json = parse_defined(bytes, file, "lensSide");
-    const Node node{json, "", file};
-    WrittenSide written;
-    read_fields(node, side_fields(), written);
-    return side_of(written, node);
+    check_lens_side({json, "", file});
+    LensSide side;
+    from_json_value(json, side);
+    return side;
 }
 
 LensPrescription parse_lens(const std::string& bytes, const std::string& file,

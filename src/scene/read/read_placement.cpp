@@ -159,6 +159,8 @@ void check_sides(const Node& node) {
 /// In its own frame.
 ObjectPrimitive read_shape(const Node& node) {
     check_sides(node);
+    for (const char* side : {"front", "back"})
+        if (node.has(side)) check_lens_side(node[side]);
     ObjectPrimitive shape;
     read_fields(node, primitive_fields(), shape);
     if (const auto* lens = std::get_if<LensPrimitive>(&shape.kind))

@@ -116,8 +116,10 @@ std::shared_ptr<const Texture> read_numbers(Reading& reading, const std::string&
 std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const TextureSampler& wrap);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
-/// A side of a lens, of a checked object.
+/// A side of a lens, of a checked object that check_lens_side has passed.
 void from_json_value(const Json& json, LensSide& side);
+/// Throws InputError with its place where the side's terms do not go together.
+void check_lens_side(const Node& side);
 /// The polygons of an object's primitive, in its own frame.
 PolygonMesh read_object_primitive(const Node& primitive);
 Transform read_transform(const Node& mesh);
