@@ -245,11 +245,11 @@ void bind_map(RendererClass& renderer) {
         py::arg("tolerance") = FilmMapRequest().tolerance, py::arg("file") = py::none(),
         py::arg("progress") = py::none(),
         "A map between the film and a target, pixel by pixel.\n\n"
-        "to, center, proxy, optic, path, progress: as in unwrap.\n"
+        "to, center, proxy, optic, progress: as in unwrap; path too, for the way \"unwrap\" alone.\n"
         "way: \"unwrap\": of the target's size, with places on the film; \"view\": of the film's size, with "
         "places on "
         "the\ntarget, by exact rays.\n"
-        "word: of a view, the events to follow, as in shoot.\n"
+        "word: for the way \"view\" alone, the events to follow, as in shoot.\n"
         "tolerance: source pixels that places between exact ones may be off.\n"
         "file: written too: .exr (STMap), .npz (for cv2.remap) or .pgm (two files, for ffmpeg's remap).\n"
         "Returns a dict of arrays (height, width): x and y, float32, where to look, pixels from the source's "
@@ -257,7 +257,8 @@ void bind_map(RendererClass& renderer) {
         "a pixel's\ncentre at .5, -1 where nothing is; valid, bool; jacobian (height, width, 2, 2): [[dx/dx, "
         "dx/dy], "
         "[dy/dx, dy/dy]],\nsource pixels per pixel.\n"
-        "Raises UsageError for what the scene does not have, InputError where nothing is mapped, "
+        "Raises UsageError for what the scene does not have and a path or a word with the other way,\n"
+        "InputError where nothing is mapped, "
         "OutputError.");
     renderer.def(
         "warp_mesh",
@@ -280,9 +281,12 @@ void bind_map(RendererClass& renderer) {
                     nodes.push_back(value);
             py::dict made;
             made["nodes"] = array_of(std::move(nodes), {mesh.rows, mesh.columns, 5});
-            made["error_mean"] = mesh.error_mean;
-            made["error_p99"] = mesh.error_p99;
-            made["error_max"] = mesh.error_max;
+            const auto error = [&](double WarpError::*which) {
+                return mesh.error ? py::cast((*mesh.error).*which) : py::none();
+            };
+            made["error_mean"] = error(&WarpError::mean);
+            made["error_p99"] = error(&WarpError::p99);
+            made["error_max"] = error(&WarpError::max);
             return made;
         },
         py::arg("to"), py::arg("columns") = 0, py::arg("rows") = 0, py::arg("camera") = py::none(),
@@ -303,7 +307,8 @@ void bind_map(RendererClass& renderer) {
         "left,\n"
         "and intensity, 0..1, negative where nothing is drawn; error_mean, error_p99, error_max: how far "
         "off\n"
-        "what programs interpolate in cells is, bilinearly or on two triangles, in the same pixels.\n"
+        "what programs interpolate in cells is, bilinearly or on two triangles, in the same pixels; None\n"
+        "where no cell is drawn at all its nodes.\n"
         "Raises UsageError for what the scene does not have, and a word or a path with the other grid,\n"
         "InputError where the film shows nothing, OutputError.");
 }

@@ -29,6 +29,11 @@ FilmMapRequest request_of(const MapOptions& options, const Renderer& renderer) {
     return request;
 }
 
+Json error_json(const std::optional<WarpError>& error) {
+    if (!error) return nullptr;
+    return {{"mean", error->mean}, {"p99", error->p99}, {"max", error->max}};
+}
+
 Answer run_mesh(const MapOptions& options, const FilmMapRequest& request, const Renderer& renderer,
                 Console& console) {
     if (options.way == "unwrap") throw UsageError("a mesh is of the film: --way view, or none");
@@ -45,15 +50,17 @@ Answer run_mesh(const MapOptions& options, const FilmMapRequest& request, const 
     const WarpMesh mesh = make_mesh(renderer, request, params, console.progress("map"));
     const double seconds = watch.seconds();
     write_mesh(options.output, mesh);
-    if (params.columns == 0 && mesh.error_p99 > params.max_error)
+    if (!mesh.error)
+        console.warn("no cell of the mesh is drawn at all its nodes: its error is unmeasured");
+    else if (params.columns == 0 && mesh.error->p99 > params.max_error)
         console.warn(
-            fmt::format("the finest mesh is off by {:.3g} pixels between its nodes (p99)", mesh.error_p99));
+            fmt::format("the finest mesh is off by {:.3g} pixels between its nodes (p99)", mesh.error->p99));
     Answer answer = name_output(options.output, console);
     answer.fields["grid"] = name_of(mesh.grid);
     answer.fields["columns"] = mesh.columns;
     answer.fields["rows"] = mesh.rows;
     answer.fields["drawn"] = mesh.drawn_count();
-    answer.fields["error_px"] = {{"mean", mesh.error_mean}, {"p99", mesh.error_p99}, {"max", mesh.error_max}};
+    answer.fields["error_px"] = error_json(mesh.error);
     answer.fields["seconds"] = seconds;
     console.note_stage(fmt::format("made a mesh of {} x {} nodes", mesh.columns, mesh.rows), watch);
     return answer;
@@ -124,7 +131,8 @@ Command map_command() {
            .choices = {"unwrap", "view"}},
           {.names = "--word",
            .target = &options->word,
-           .help = "view and meshes: events to follow, R reflected, T transmitted, ? either",
+           .help = "view and meshes on the film, instead of --path: events to follow, R reflected, T "
+                   "transmitted, ? either",
            .value = "WORD"},
           {.names = "--tolerance",
            .target = &options->tolerance,

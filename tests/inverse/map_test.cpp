@@ -177,7 +177,7 @@ TEST_CASE("a warp mesh is exact at its nodes and of second order between them", 
     INFO("halved cells are off by " << ratio << " times less in the median");
     CHECK(ratio > 3.5);
     CHECK(ratio < 4.5);
-    CHECK(fine.error_mean < coarse.error_mean / 2);  // with the rim
+    CHECK(fine.error.value().mean < coarse.error.value().mean / 2);  // with the rim
     CHECK(coarse.drawn_count() > 300);
 
     int checked = 0;
@@ -192,7 +192,7 @@ TEST_CASE("a warp mesh is exact at its nodes and of second order between them", 
     WarpMeshParams chosen;
     chosen.max_error = 2;
     const WarpMesh mesh = make_warp_mesh(*world, request, chosen);
-    CHECK(mesh.error_p99 <= 2);
+    CHECK(mesh.error.value().p99 <= 2);
     const std::string text = bourke_mesh(coarse);
     CHECK(text.rfind("2\n65 37\n", 0) == 0);
     CHECK(std::count(text.begin(), text.end(), '\n') == 2 + 65 * 37);
@@ -229,7 +229,7 @@ TEST_CASE("a mirror dome's warp mesh, read and drawn as others do, is within a h
     params.max_error = 0.01;
     params.grid = WarpGrid::kTarget;
     const WarpMesh made = make_warp_mesh(*world, dome_request(), params);
-    CHECK(made.error_p99 <= 0.01);
+    CHECK(made.error.value().p99 <= 0.01);
     CHECK(made.columns < kMostWarpColumns);
     const std::vector<DrawnNode> nodes = read_mesh(bourke_mesh(made), made.columns, made.rows);
     std::mt19937 random(5);
@@ -267,12 +267,28 @@ TEST_CASE("a mirror dome's warp mesh, read and drawn as others do, is within a h
     std::sort(errors.begin(), errors.end());
     INFO(beside << " places beside the ball, " << faded << " of 20000 in cells at its rim; p99 "
                 << errors[errors.size() * 99 / 100] << ", max " << errors.back() << " of " << made.columns
-                << " x " << made.rows << " nodes, said " << made.error_p99 << ", " << made.error_max);
+                << " x " << made.rows << " nodes, said " << made.error->p99 << ", " << made.error->max);
     CHECK(errors[errors.size() * 99 / 100] < 0.01);
     CHECK(beside == 0);
     CHECK(faded < 200);
     // At the very rim the closed form's derivative is infinite, and tells nothing of pixels.
-    CHECK(errors[errors.size() * 999 / 1000] < made.error_max);
+    CHECK(errors[errors.size() * 999 / 1000] < made.error->max);
+}
+
+TEST_CASE("of a mesh without one whole cell no error is said, and no mesh that is chosen is one",
+          "[inverse]") {
+    std::string json = dome_json();
+    json.replace(json.find("\"yfov\": 22"), 10, "\"yfov\": 150");
+    const auto world = world_of(json);
+    const WarpMesh coarse = make_warp_mesh(*world, dome_request(), {17, 9, 1});
+    CHECK(coarse.drawn_count() > 0);
+    CHECK_FALSE(coarse.error.has_value());
+    WarpMeshParams chosen;
+    chosen.max_error = 20;
+    const WarpMesh fine = make_warp_mesh(*world, dome_request(), chosen);
+    REQUIRE(fine.error.has_value());
+    CHECK(fine.error->p99 <= 20);
+    CHECK(fine.error->p99 > 0);
 }
 
 TEST_CASE("maps are written as others read them", "[inverse]") {
@@ -323,6 +339,11 @@ TEST_CASE("maps that lead nowhere are refused", "[inverse][bad-input]") {
     path.path = Path::kReflect;
     CHECK_THROWS_AS(make_warp_mesh(*world, path, {33, 19, 1}), UsageError);
     CHECK(make_warp_mesh(*world, path, {33, 9, 1, WarpGrid::kTarget}).drawn_count() > 50);
+    for (const MapWay way : {MapWay::kUnwrap, MapWay::kView}) {
+        FilmMapRequest other = way == MapWay::kView ? path : word;
+        other.way = way;
+        CHECK_THROWS_AS(make_film_map(*world, other), UsageError);
+    }
     FilmMapRequest optic = dome_request();
     optic.optic = 4;
     CHECK_THROWS_AS(make_film_map(*world, optic), UsageError);

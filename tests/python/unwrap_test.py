@@ -102,6 +102,10 @@ def test_a_warp_mesh_and_an_anamorphosis(tmp_path):
     for grid, way in (("film", {"path": "reflect"}), ("target", {"word": "R"})):
         with pytest.raises(trilens.UsageError, match="regular on"):
             dome.warp_mesh("fisheye:512", 33, 19, proxy="sphere:3", center=(0, 0, 0), grid=grid, **way)
+    assert dome.warp_mesh("fisheye:512", 2, 2, proxy="sphere:3", center=(0, 0, 0), grid="target")["error_max"] is None
+    for way, other in (("view", {"path": "reflect"}), ("unwrap", {"word": "R"})):
+        with pytest.raises(trilens.UsageError, match="goes with the way"):
+            dome.map("fisheye:64", way, proxy="sphere:3", center=(0, 0, 0), **other)
     radius = np.hypot(*(rings["nodes"][..., 2:4] - 256).transpose(2, 0, 1))
     assert np.allclose(radius, 256 * np.linspace(0, 1, 17)[:, None]) and rings["error_p99"] < 20
 

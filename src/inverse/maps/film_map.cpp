@@ -75,6 +75,9 @@ FilmMap make_film_map(const World& world, const FilmMapRequest& request, const P
     const Film& film = world.scene.film;
     const int wide = request.target.width, high = request.target.height;
     const bool unwraps = request.way == MapWay::kUnwrap;
+    if (!unwraps && request.path) throw UsageError("a path goes with the way unwrap; a view takes a word");
+    if (unwraps && request.word.asks())
+        throw UsageError("a word of events goes with the way view; an unwrap takes a path");
 
     const FilmImagesParams to_film{request.frame, request.optic, request.path,
                                    !target.has_directions() || proxy.asks_visibility()};

@@ -36,7 +36,7 @@ struct TargetRequest {
     ProxyDescription proxy;            // of targets of directions
     std::optional<Vec3> center;        // of these: where directions start; none: the middle of the optic
     std::optional<std::size_t> optic;  // index into World::optics; none: any
-    std::optional<Path> path;          // none: reflected by mirrors, refracted by glass
+    std::optional<Path> path;          // not of views; none: reflected by mirrors, refracted by glass
     double tolerance = 0.01;           // pixels of the source that interpolated places may be off
     FrameParams frame;
 };
@@ -46,7 +46,7 @@ void check_target_request(const World& world, const TargetRequest& request);
 
 struct FilmMapRequest : TargetRequest {
     MapWay way = MapWay::kUnwrap;
-    EventWord word = {};  // kView, instead of the path; asks for nothing: the way that carries most light
+    EventWord word = {};  // of views alone, instead of the path; asks for nothing: where most light goes
 };
 
 /// One map: per pixel of the warped picture, rows from the top, where it is taken from.
@@ -63,7 +63,8 @@ struct FilmMap {
 };
 
 /// Where a place is seen several times, the best resolved image is taken. Throws UsageError for what the
-/// scene does not have, InputError where nothing is mapped; Interrupted.
+/// scene does not have, a path of a view and a word of an unwrap, InputError where nothing is mapped;
+/// Interrupted.
 FilmMap make_film_map(const World& world, const FilmMapRequest& request, const Progress& progress = {});
 
 /// Pixels between the first exact places: fewer where objects may hide what is seen, of any shape.
@@ -114,6 +115,11 @@ struct WarpNode {
     double intensity = -1;  // 0..1; negative: nothing is drawn there
 };
 
+/// How far what programs draw in a mesh's cells lies from exact rays, pixels.
+struct WarpError {
+    double mean = 0, p99 = 0, max = 0;
+};
+
 struct WarpMesh {
     WarpGrid grid = WarpGrid::kFilm;
     int columns = 0, rows = 0;  // nodes
@@ -127,17 +133,16 @@ struct WarpMesh {
     }
     std::size_t drawn_count() const;  // nodes with intensity > 0
 
-    /// How far what programs draw in a cell lies from exact rays, whether they interpolate bilinearly or on
-    /// two triangles, whichever the diagonal: over cells whose nodes are all drawn, or some 50,000 of them,
-    /// evenly spread. In pixels of the target; of a mesh that is regular there (kTarget) in pixels of the
-    /// film.
-    double error_mean = 0, error_p99 = 0, error_max = 0;
+    /// Of the worst way to interpolate, bilinearly or on two triangles, along either diagonal: over cells
+    /// whose nodes are all drawn, or some 50,000 of them, evenly spread. In pixels of the target; of a mesh
+    /// that is regular there (kTarget) in pixels of the film. None: no such cell, nothing was measured.
+    std::optional<WarpError> error;
 };
 
 struct WarpMeshParams {
     int columns = 0,
-        rows = 0;  // nodes; 0: as many as keep error_p99 at max_error, at most kMostWarpColumns wide
-    double max_error = 0.5;  // pixels, as WarpMesh::error_p99
+        rows = 0;  // nodes; 0: as many as keep error->p99 at max_error, at most kMostWarpColumns wide
+    double max_error = 0.5;  // pixels, as WarpError::p99
     WarpGrid grid = WarpGrid::kFilm;
 };
 

@@ -21,6 +21,8 @@ constexpr double kJustInside = 1 - 1e-9;
 constexpr std::size_t kMostMeasured = 50'000;
 /// Of a fisheye's mesh, so that its cells are about square a third of the way out.
 constexpr double kRingsPerRay = 0.5;
+/// So many times the columns in a step, at most.
+constexpr double kFinest = 4;
 
 /// What makes nodes: places where a mesh is regular in, their places on the other side out, on the target or
 /// on the film.
@@ -191,7 +193,7 @@ std::vector<Cell> evenly_spread(const std::vector<Cell>& cells, std::size_t most
     return some;
 }
 
-/// Errors of whole cells.
+/// Errors of whole cells, if there are.
 void measure(const MeshMaker& maker, WarpMesh& mesh) {
     const std::vector<Cell> cells = evenly_spread(whole_cells(mesh), kMostMeasured);
     std::vector<double> errors(cells.size(), -1);
@@ -215,9 +217,8 @@ void measure(const MeshMaker& maker, WarpMesh& mesh) {
     std::erase(errors, -1);
     if (errors.empty()) return;
     std::sort(errors.begin(), errors.end());
-    mesh.error_mean = std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());
-    mesh.error_p99 = errors[static_cast<std::size_t>(0.99 * double(errors.size() - 1))];
-    mesh.error_max = errors.back();
+    mesh.error = {std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size()),
+                  errors[static_cast<std::size_t>(0.99 * double(errors.size() - 1))], errors.back()};
 }
 
 /// Nodes that show nothing beside ones that do: the mean of what these and those behind them go on to.
@@ -275,13 +276,15 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
         WarpMesh mesh = nodes_of(maker, columns, chooses ? rows_for(columns) : params.rows);
         measure(maker, mesh);
         if (progress.cancelled()) throw Interrupted();
-        if (!chooses || mesh.error_p99 <= params.max_error || columns >= kMostWarpColumns) {
+        if (!chooses || (mesh.error && mesh.error->p99 <= params.max_error) || columns >= kMostWarpColumns) {
             extend_rim(mesh, maker.found());
             progress(1);
             return mesh;
         }
         // The error falls with the square of the cells' size; near the rim more slowly.
-        const double finer = std::clamp(1.1 * std::sqrt(mesh.error_p99 / params.max_error), 1.2, 4.0);
+        const double finer =
+            mesh.error ? std::clamp(1.1 * std::sqrt(mesh.error->p99 / params.max_error), 1.2, kFinest)
+                       : kFinest;
         columns = std::min(kMostWarpColumns, static_cast<int>(finer * (columns - 1)) + 1);
         progress(double(columns) / kMostWarpColumns);
     }
