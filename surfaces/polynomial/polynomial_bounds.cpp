@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -52,14 +53,14 @@ Face take_apart(const Surface& surface, Id id) {
     face.branches.push_back({});
     for (std::size_t b = 0; b < face.branches.size(); ++b) {
         const PartShape shape = face.branches[b].shape;
-        FacePart part = fit_part(surface, id, shape);
-        const bool split = !part.is_polynomial && std::fabs(shape.size) > finest;
+        const std::optional<FacePart> part = polynomial_part(surface, id, shape);
+        const bool split = !part && std::fabs(shape.size) > finest;
         face.branches[b].is_part = !split;
         face.branches[b].first = split ? face.branches.size() : face.parts.size();
         if (split) {
             for (const PartShape& quarter : quarters(shape, domain)) face.branches.push_back({quarter});
         } else {
-            face.parts.push_back(std::move(part));
+            face.parts.push_back(part ? *part : sampled_part(surface, id, shape));
         }
     }
     return face;

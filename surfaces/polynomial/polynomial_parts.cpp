@@ -114,28 +114,40 @@ double largest_coordinate(const Vec3& v) {
     return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
-/// The largest differences of the quantities between the surface and the nets, by the surface's parameters.
-std::array<double, kQuantities> differences(const Surface& surface, Id face, const FacePart& part,
-                                            const std::array<BezierNet, kQuantities>& nets) {
+using PerQuantity = std::array<double, kQuantities>;
+
+/// By what derivatives by the part's own parameters are divided to be those by the face's.
+PerQuantity scales(double size) {
+    return {1, size, size, size * size, size * size, size * size};
+}
+
+/// The largest differences of the quantities between the surface and the part's nets, by the surface's
+/// parameters; none as soon as one is more than allowed.
+std::optional<PerQuantity> differences(const Surface& surface, Id face, const FacePart& part,
+                                       const PerQuantity& allowed) {
     std::vector<Vec2> points = probes(surface.domain(face));
     add_border_probes(surface.domain(face), part.shape, points);
-    std::array<double, kQuantities> largest{};
+    const std::array<BezierNet, kQuantities> nets = part_nets(part.net);
+    const PerQuantity scale = scales(part.shape.size);
+    PerQuantity largest{};
     for (const Vec2& t : points) {
         SurfacePoint point = surface.eval(face, at(part.shape, t));
         point.position -= part.origin;
         for (std::size_t q = 0; q < kQuantities; ++q) {
-            const double scale = std::pow(part.shape.size, q == 0 ? 0 : q < 3 ? 1 : 2);
-            const double difference = length(value(nets[q], t) / scale - point.*kQuantity[q]);
-            // Not a number stays the largest.
-            if (!(difference <= largest[q])) largest[q] = difference;
+            const double difference = length(value(nets[q], t) / scale[q] - point.*kQuantity[q]);
+            if (!(difference <= allowed[q])) return std::nullopt;  // nor for not a number
+            largest[q] = std::max(largest[q], difference);
         }
     }
     return largest;
 }
 
-/// Samples over the whole part, and how far they lie from its middle.
-void sample(const Surface& surface, Id face, FacePart& part) {
+}  // namespace
+
+FacePart sampled_part(const Surface& surface, Id face, const PartShape& shape) {
     constexpr int kSteps = 6;
+    FacePart part;
+    part.shape = shape;
     const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
     part.middle = surface.eval(face, at(part.shape, Vec2(triangle ? 1.0 / 3 : 0.5)));
     part.slack.fill(0);
@@ -154,16 +166,15 @@ void sample(const Surface& surface, Id face, FacePart& part) {
     }
     // Derivatives that are approximations have no second ones that bound their change.
     for (std::size_t q = 3; q < kQuantities; ++q) part.slack[q] = std::numeric_limits<double>::infinity();
+    return part;
 }
-
-}  // namespace
 
 std::array<BezierNet, kQuantities> part_nets(const BezierNet& net) {
     const BezierNet du = derivative(net, 0), dv = derivative(net, 1);
     return {net, du, dv, derivative(du, 0), derivative(du, 1), derivative(dv, 1)};
 }
 
-FacePart fit_part(const Surface& surface, Id face, const PartShape& shape) {
+std::optional<FacePart> polynomial_part(const Surface& surface, Id face, const PartShape& shape) {
     FacePart part;
     part.shape = shape;
     part.origin = surface.eval_first_order(face, at(shape, Vec2(0.3))).position;
@@ -172,15 +183,13 @@ FacePart fit_part(const Surface& surface, Id face, const PartShape& shape) {
     double size = 0;
     for (const Vec3& control : part.net.points()) size = std::max(size, length(control));
     const double tolerance = kFitTolerance * size + kCoordinateTolerance * largest_coordinate(part.origin);
-    const std::array<double, kQuantities> off = differences(surface, face, part, part_nets(part.net));
+    PerQuantity allowed = scales(std::fabs(shape.size));
+    for (std::size_t q = 0; q < kQuantities; ++q) allowed[q] = kMoreTolerance[q] * tolerance / allowed[q];
+    const std::optional<PerQuantity> off = differences(surface, face, part, allowed);
+    if (!off) return std::nullopt;
     part.is_polynomial = true;
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-        const double scale = std::pow(std::fabs(shape.size), q == 0 ? 0 : q < 3 ? 1 : 2);
-        const double allowed = kMoreTolerance[q] * tolerance / scale;
-        part.is_polynomial = part.is_polynomial && off[q] <= allowed;
-        part.slack[q] = kSlackFactor * off[q] + 0.05 * allowed;
-    }
-    if (!part.is_polynomial) sample(surface, face, part);
+    for (std::size_t q = 0; q < kQuantities; ++q)
+        part.slack[q] = kSlackFactor * (*off)[q] + 0.05 * allowed[q];
     return part;
 }
 

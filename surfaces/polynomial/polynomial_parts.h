@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,8 +70,11 @@ struct FacePart {
 /// The nets of the six quantities, derivatives by the net's own parameters.
 std::array<BezierNet, kQuantities> part_nets(const BezierNet& net);
 
-/// The part as a polynomial of degree 3 in u and in v (squares) or 4 in both together (triangles), or as
-/// samples if it is none.
-FacePart fit_part(const Surface& surface, Id face, const PartShape& shape);
+/// The part as a polynomial of degree 3 in u and in v (squares) or 4 in both together (triangles); none if it
+/// is not one.
+std::optional<FacePart> polynomial_part(const Surface& surface, Id face, const PartShape& shape);
+
+/// The part as samples.
+FacePart sampled_part(const Surface& surface, Id face, const PartShape& shape);
 
 }  // namespace trilens
