@@ -89,7 +89,7 @@ Receiver receiver_at(const World& world, const Vec3& point, const Vec3& normal) 
 /// The histories of the beams as words, with what of each is to be asked.
 std::map<std::string, std::size_t> words_of(const Beams& beams) {
     std::map<std::string, std::size_t> words;
-    for (const BeamHistory& history : beams.histories) {
+    for (const LightHistory& history : beams.histories) {
         std::string word;
         for (const Step& step : history.steps) word += step.event == Event::kReflect ? 'R' : 'T';
         ++words[word];
