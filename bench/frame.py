@@ -32,9 +32,12 @@ GROUPS = [
                     r"|::solve|__fma"),
     ("shading", r"shade_|Shaded|Contributions|sample_colour|lookup_|optic_weights|fresnel|light_of_view"),
     ("compression and packing", r"isal|deflate|zip_block|pack_|OpenEXR|libdeflate|libz|png|ExrStrips"),
+    ("textures", r"::lookup|look_up|texels_at|lattice_over|Texture|FacetMap|RayDifferentials|texture_"),
+    ("coverage: squares of rays", r"Square|CoverageBounder|MetTriangles|see_first|collect_triangles|are_paired"),
     ("rays and views of samples", r"for_each_camera_ray|SampleViews|FacetViewer|collect_ends|NodeDrawer|ShownDrawer|OpticPaths"
-                                  r"|draw_optic_paths|sample_ray|follow|surroundings"),
-    ("pixels of the layers", r"Canvas|put_band|mean_colour|draw_layers|::add\b"),
+                                  r"|draw_optic_paths|sample_ray|follow|surroundings|HistoryDrawer|facet_map|facet_weights"
+                                  r"|trace_samples|shade_rays|FacetRays|set_means"),
+    ("pixels of the layers", r"Canvas|BandSource|put_band|mean_colour|draw_layers|::add\b"),
     ("operating system: pages, files", r"\[k\]|kernel|mem(set|cpy|move)"),
 ]
 

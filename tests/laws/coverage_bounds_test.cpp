@@ -47,15 +47,19 @@ CoverageTally hold_against_samples(const World& world, const FrameParams& frame)
     const std::unique_ptr<Viewer> viewer = make_viewer(world, frame, Engine::kExact, ignore);
     CoverageTally held;
     SampleViews centres, samples;
+    const SampleGrid whole{0, 0, film.width, film.height, 1};
+    viewer->view(whole, centres);
+    std::vector<Id> shown_by_pixel;
+    for (const SampleView& view : centres.samples) shown_by_pixel.push_back(shown_mesh(world, view));
+    std::vector<CoverageBounds> bounds_by_pixel(whole.pixels());
+    viewer->bound_coverage(whole, shown_by_pixel, bounds_by_pixel);
     for (int y = 0; y < film.height; ++y) {
-        const SampleGrid row{0, y, film.width, y + 1, 1}, fine{0, y, film.width, y + 1, kSamplesAcross};
-        viewer->view(row, centres);
-        std::vector<Id> shown;
-        for (const SampleView& view : centres.samples) shown.push_back(shown_mesh(world, view));
-        std::vector<CoverageBounds> bounds(shown.size());
-        viewer->bound_coverage(row, shown, bounds);
+        const SampleGrid fine{0, y, film.width, y + 1, kSamplesAcross};
         viewer->view(fine, samples);
-        for (std::size_t x = 0; x < shown.size(); ++x) {
+        const std::size_t start = whole.first_sample(0, y), width = static_cast<std::size_t>(film.width);
+        const std::span<const Id> shown(shown_by_pixel.data() + start, width);
+        const std::span<const CoverageBounds> bounds(bounds_by_pixel.data() + start, width);
+        for (std::size_t x = 0; x < width; ++x) {
             const std::size_t first = fine.first_sample(static_cast<int>(x), y);
             std::size_t count = 0;
             for (std::size_t s = 0; s < kSamplesAcross * kSamplesAcross; ++s)

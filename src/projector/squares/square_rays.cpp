@@ -73,9 +73,9 @@ SquareRays::SquareRays(const FacetRays& facet, const Vec2& low, const Vec2& high
 void SquareRays::add_side(const Vec3& normal) {
     if (side_count_ == sides_.size() || !(dot(normal, normal) > 0)) return;
     constexpr double kTurned = 1e-13;
-    Side side{normal, std::numeric_limits<double>::infinity()};
+    Side side{normal, std::numeric_limits<double>::infinity(), length(normal)};
     for (std::size_t k = 0; k < 4; ++k) {
-        if (dot(normal, direction_[k]) < -kTurned * length(normal) * length(direction_[k])) return;
+        if (dot(normal, direction_[k]) < -kTurned * side.size * length(direction_[k])) return;
         side.offset = std::min(side.offset, dot(normal, origin_[k]) / weight_[k]);
     }
     sides_[side_count_++] = side;
@@ -96,6 +96,17 @@ bool SquareRays::may_meet(const Vec3& low, const Vec3& high) const {
     return true;
 }
 
+bool SquareRays::is_outside(const std::array<Vec3, 3>& corner, double far) const {
+    for (std::size_t s = 0; s < side_count_; ++s) {
+        const Side& side = sides_[s];
+        const double most =
+            std::max({dot(side.normal, corner[0]), dot(side.normal, corner[1]), dot(side.normal, corner[2])});
+        if (most < side.offset - kSignSlack * (std::fabs(side.offset) + side.size * (far + length(shift_))))
+            return true;
+    }
+    return false;
+}
+
 SquareMeeting::SquareMeeting(const SquareRays& rays, const std::array<Vec3, 3>& from_centre, double reach) {
     std::array<Vec3, 3> corner;
     std::array<double, 3> far;
@@ -106,6 +117,7 @@ SquareMeeting::SquareMeeting(const SquareRays& rays, const std::array<Vec3, 3>& 
 
     // Without area: never seen.
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) return;
+    if (rays.is_outside(corner, std::max({far[0], far[1], far[2]}))) return;
 
     // Where along the rays: between the corners', and as the plane has it.
     Spread t;

@@ -35,9 +35,13 @@ class SquareRays {
     struct Side {
         Vec3 normal{0};
         double offset = 0;  // the beam has normal . x >= offset
+        double size = 0;    // the normal's length
     };
 
     void add_side(const Vec3& normal);
+    /// Whether a triangle, from `shift_`, lies beyond one of the beam's sides. `far`: how far its corners
+    /// lie, at most.
+    bool is_outside(const std::array<Vec3, 3>& corner, double far) const;
 
     Vec3 shift_{0};  // from the facet's centre to where the middle ray starts; what follows counts from there
     // Of the rays at the corners, in a ring: times their weights.

@@ -13,12 +13,24 @@ namespace {
 constexpr int kLevels = 5;  // of a pixel's division: 32 x 32 cells
 constexpr int kCellsAcross = 1 << kLevels;
 
+/// Pixels along a block's edge, a power of two: what all of them see is found for the block, then for its
+/// quarters.
+constexpr double kBlock = 16;
+
 /// Stands for any of several optics.
 constexpr Id kSomeOptic = kNone - 1;
 
 /// Whether the pixel from this place on is in the window.
 bool holds_pixel(const SampleGrid& window, const Vec2& at) {
     return at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
+}
+
+/// Whether a pixel of the block is in the window; and all of them.
+bool touches_block(const SampleGrid& window, const Vec2& at, double size) {
+    return at.x + size > window.x0 && at.x < window.x1 && at.y + size > window.y0 && at.y < window.y1;
+}
+bool holds_block(const SampleGrid& window, const Vec2& at, double size) {
+    return holds_pixel(window, at) && holds_pixel(window, at + Vec2(size - 1));
 }
 
 /// How a square lies to a facet on the screen.
@@ -104,12 +116,36 @@ CoverageBounder::CoverageBounder(const World& world, const Frame& frame,
     }
 }
 
+/// What rays of a block of pixels may see, all of one facet.
+struct CoverageBounder::BlockSight {
+    const CameraFacet* facet = nullptr;
+    std::vector<SquareTriangle> triangles;
+};
+
+/// The pixels that are asked about, and the answers.
+struct CoverageBounder::Wanted {
+    const SampleGrid& grid;
+    std::span<const Id> shown;
+    std::span<CoverageBounds> bounds;
+    std::span<const Id> facets;  // of their rows
+
+    std::size_t index(double x, double y) const {
+        return static_cast<std::size_t>(y - grid.y0) * static_cast<std::size_t>(grid.width()) +
+               static_cast<std::size_t>(x - grid.x0);
+    }
+};
+
 /// One pixel: the camera's facets that it touches, with what their rays may meet there.
 class CoverageBounder::Pixel {
   public:
     Pixel(const CoverageBounder& of, const Vec2& at, Id shown);
 
     void add_facet(const CameraFacet& facet);
+    /// Instead: the facet that the pixel lies in, with what the block around it may see.
+    void take(const BlockSight& around) {
+        parts_.push_back({around.facet, std::vector<Triangles>(kLevels + 2)});
+        parts_.back().triangles[0] = around.triangles;
+    }
     CoverageBounds bounds() {
         divide(at_, 0);
         constexpr float kCells = kCellsAcross * kCellsAcross;
@@ -227,8 +263,13 @@ void CoverageBounder::Pixel::divide(const Vec2& low, int level) {
         divide(low + half * Vec2(quarter & 1, quarter >> 1), level + 1);
 }
 
-CoverageBounds CoverageBounder::bound_pixel(const Vec2& at, Id shown, std::span<const Id> facets) const {
+CoverageBounds CoverageBounder::bound_pixel(const Vec2& at, Id shown, std::span<const Id> facets,
+                                            const BlockSight* around) const {
     Pixel pixel(*this, at, shown);
+    if (around) {
+        pixel.take(*around);
+        return pixel.bounds();
+    }
     for (const Id f : facets) {
         const CameraFacet& facet = facets_[f];
         if (frame_.camera.linear || (facet.low.x <= at.x + 1 && facet.high.x >= at.x &&
@@ -238,20 +279,95 @@ CoverageBounds CoverageBounder::bound_pixel(const Vec2& at, Id shown, std::span<
     return pixel.bounds();
 }
 
+/// The facet that a square lies in; null: several, or none.
+const CoverageBounder::CameraFacet* CoverageBounder::facet_around(const Vec2& low, const Vec2& high,
+                                                                  std::span<const Id> facets) const {
+    for (const Id f : facets) {
+        const CameraFacet& facet = facets_[f];
+        if (frame_.camera.linear) return &facet;
+        if (facet.low.x <= low.x && facet.high.x >= high.x && facet.low.y <= low.y &&
+            facet.high.y >= high.y && square_on_facet(facet.weights, low, high).lies_in)
+            return &facet;
+    }
+    return nullptr;
+}
+
+/// What a block's rays may meet, where they are of one facet and its pixels are in the window of one optic,
+/// or in none's.
+std::optional<CoverageBounder::BlockSight> CoverageBounder::meet_block(const Vec2& at, double size,
+                                                                       std::span<const Id> facets) const {
+    std::optional<std::size_t> optic;
+    for (std::size_t i = 0; i < windows_.size(); ++i) {
+        if (!touches_block(windows_[i], at, size)) continue;
+        if (optic || !holds_block(windows_[i], at, size)) return std::nullopt;
+        optic = i;
+    }
+    BlockSight met{facet_around(at, at + Vec2(size), facets), {}};
+    if (!met.facet) return std::nullopt;
+    const SquareRays rays(met.facet->rays, at, at + Vec2(size));
+    if (!rays.has_rays()) return std::nullopt;
+    const Vec3& centre = met.facet->rays.centre;
+    collect_triangles(
+        prepared_objects(world_), centre, rays, [&](Id triangle) { return world_.objects.object[triangle]; },
+        met.triangles);
+    if (optic)
+        collect_triangles(
+            frame_.optics[*optic].facets->prepared(), centre, rays,
+            [&](Id) { return world_.optics[*optic].mesh; }, met.triangles);
+    return met;
+}
+
+/// `around`: what the block's rays may see; null: not known.
+void CoverageBounder::bound_block(const Vec2& at, double size, const BlockSight* around,
+                                  const Wanted& wanted) const {
+    const SampleGrid& grid = wanted.grid;
+    if (!touches_block(grid, at, size)) return;
+    std::optional<BlockSight> met;
+    if (!around && size > 1) met = meet_block(at, size, wanted.facets);
+    if (met) around = &*met;
+    if (size == 1) {
+        const std::size_t i = wanted.index(at.x, at.y);
+        wanted.bounds[i] = bound_pixel(at, wanted.shown[i], wanted.facets, around);
+        return;
+    }
+
+    BlockSight kept;
+    if (around) {
+        const SquareRays rays(around->facet->rays, at, at + Vec2(size));
+        const SquareSight sight = see_first(rays, reach_, around->triangles, kept.triangles);
+        kept.facet = around->facet;
+        if (sight.is_sure) {
+            for (double y = std::max<double>(at.y, grid.y0); y < std::min<double>(at.y + size, grid.y1); ++y)
+                for (double x = std::max<double>(at.x, grid.x0); x < std::min<double>(at.x + size, grid.x1);
+                     ++x) {
+                    const std::size_t i = wanted.index(x, y);
+                    const float share = wanted.shown[i] == sight.surface ? 1.0f : 0.0f;
+                    wanted.bounds[i] = {share, share};
+                }
+            return;
+        }
+    }
+    const double half = size / 2;
+    for (int quarter = 0; quarter < 4; ++quarter)
+        bound_block(at + half * Vec2(quarter & 1, quarter >> 1), half, around ? &kept : nullptr, wanted);
+}
+
 void CoverageBounder::bound(const SampleGrid& grid, std::span<const Id> shown,
                             std::span<CoverageBounds> bounds) const {
-    const std::size_t width = static_cast<std::size_t>(grid.width());
-    parallel_for(static_cast<std::size_t>(grid.height()), 1, [&](std::size_t first, std::size_t last) {
+    const auto first_block = [](int from) { return std::floor(from / kBlock) * kBlock; };
+    const double top = first_block(grid.y0);
+    const std::size_t rows = static_cast<std::size_t>(std::ceil((grid.y1 - top) / kBlock));
+    parallel_for(rows, 1, [&](std::size_t first, std::size_t last) {
         std::vector<Id> facets;
         for (std::size_t row = first; row < last; ++row) {
-            const double y = grid.y0 + static_cast<double>(row);
+            const double y = top + kBlock * static_cast<double>(row);
             facets.clear();
             for (std::size_t f = 0; f < facets_.size(); ++f)
-                if (frame_.camera.linear || (facets_[f].low.y <= y + 1 && facets_[f].high.y >= y))
+                if (frame_.camera.linear || (facets_[f].low.y <= y + kBlock && facets_[f].high.y >= y))
                     facets.push_back(static_cast<Id>(f));
-            for (std::size_t x = 0; x < width; ++x)
-                bounds[row * width + x] =
-                    bound_pixel({grid.x0 + static_cast<double>(x), y}, shown[row * width + x], facets);
+            const Wanted wanted{grid, shown, bounds, facets};
+            for (double x = first_block(grid.x0); x < grid.x1; x += kBlock)
+                bound_block({x, y}, kBlock, nullptr, wanted);
         }
     });
 }

@@ -3,6 +3,7 @@
 // Duff, Interval Arithmetic and Recursive Subdivision, SIGGRAPH 1992.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,8 +42,14 @@ class CoverageBounder {
         Vec2 low{0}, high{0};          // of the pixels that it may touch
     };
     class Pixel;
+    struct BlockSight;
+    struct Wanted;
 
-    CoverageBounds bound_pixel(const Vec2& at, Id shown, std::span<const Id> facets) const;
+    const CameraFacet* facet_around(const Vec2& low, const Vec2& high, std::span<const Id> facets) const;
+    std::optional<BlockSight> meet_block(const Vec2& at, double size, std::span<const Id> facets) const;
+    void bound_block(const Vec2& at, double size, const BlockSight* around, const Wanted& wanted) const;
+    CoverageBounds bound_pixel(const Vec2& at, Id shown, std::span<const Id> facets,
+                               const BlockSight* around) const;
 
     const World& world_;
     const Frame& frame_;
