@@ -224,7 +224,7 @@ Script::Script(const std::string& file, const std::string& text) : file_(file) {
     }
 }
 
-bool Script::advance(Viewer& viewer) {
+bool Script::advance(SceneViewer& viewer) {
     if (at_ >= steps_.size()) return false;
     const Json& step = steps_[at_];
     const std::string action = action_of(step);
@@ -246,7 +246,7 @@ bool Script::advance(Viewer& viewer) {
 }
 
 /// Each frame's picture is waited for when the next is due, so that a window is drawn meanwhile.
-bool Script::run_moves(Viewer& viewer, const Json& step, const std::string& action) {
+bool Script::run_moves(SceneViewer& viewer, const Json& step, const std::string& action) {
     const bool turns = action == "turntable";
     const Json count = turns ? step.at(action) : step.contains("frames") ? step.at("frames") : Json(1);
     const int frames = std::max(1, static_cast<int>(number_in(count)));
@@ -259,7 +259,7 @@ bool Script::run_moves(Viewer& viewer, const Json& step, const std::string& acti
 }
 
 /// To the place, pressed there, dragged in so many frames, released.
-bool Script::run_pointer(Viewer& viewer, const Json& step, const std::string& action) {
+bool Script::run_pointer(SceneViewer& viewer, const Json& step, const std::string& action) {
     const PointerStep pointer = pointer_step(step, action);
     const int frames = step.contains("frames") ? static_cast<int>(number_in(step.at("frames"))) : 1;
     Pointer now = pointer.held;
@@ -277,7 +277,7 @@ bool Script::run_pointer(Viewer& viewer, const Json& step, const std::string& ac
 }
 
 /// Any action with any number, many times: what a user could do who cares for nothing.
-void Script::run_random(Viewer& viewer) {
+void Script::run_random(SceneViewer& viewer) {
     const auto next = [this](std::uint64_t below) {  // splitmix64
         random_ += 0x9e3779b97f4a7c15u;
         std::uint64_t z = random_;
@@ -335,7 +335,7 @@ void Script::run_random(Viewer& viewer) {
     viewer.change("random", settings);
 }
 
-bool Script::run(Viewer& viewer, const Json& step) {
+bool Script::run(SceneViewer& viewer, const Json& step) {
     const std::string action = action_of(step);
     const Json& value = step.at(action);
     if (is_move(action)) return run_moves(viewer, step, action);

@@ -45,15 +45,15 @@ class Script {
     /// Does the next; false after the last. Throws InputError for a step that cannot be done, as a camera
     /// that the scene does not have, and OutputError. What a scene's change leads to stands in the viewer's
     /// error().
-    bool advance(Viewer& viewer);
+    bool advance(SceneViewer& viewer);
 
     const std::vector<StepReport>& reports() const { return reports_; }
 
   private:
-    bool run(Viewer& viewer, const Json& step);
-    bool run_moves(Viewer& viewer, const Json& step, const std::string& action);
-    bool run_pointer(Viewer& viewer, const Json& step, const std::string& action);
-    void run_random(Viewer& viewer);
+    bool run(SceneViewer& viewer, const Json& step);
+    bool run_moves(SceneViewer& viewer, const Json& step, const std::string& action);
+    bool run_pointer(SceneViewer& viewer, const Json& step, const std::string& action);
+    void run_random(SceneViewer& viewer);
 
     std::string file_;
     std::vector<Json> steps_;

@@ -31,13 +31,13 @@ std::string camera_pointer(const ViewSettings& settings) {
 
 }  // namespace
 
-Viewer::Viewer(const SceneRequest& source) : source_(source), session_(open_session(source)) {
+SceneViewer::SceneViewer(const SceneRequest& source) : source_(source), session_(open_session(source)) {
     reach_ = session_.reach;
     drawing_.ask(session_);
 }
 
 template <typename Work>
-bool Viewer::attempt(const Work& work) {
+bool SceneViewer::attempt(const Work& work) {
     try {
         work();
         message_.clear();
@@ -49,7 +49,7 @@ bool Viewer::attempt(const Work& work) {
     return !failed_;
 }
 
-void Viewer::change(const std::string& gesture, const ViewSettings& settings) {
+void SceneViewer::change(const std::string& gesture, const ViewSettings& settings) {
     begin_change(session_, gesture);
     session_.now.settings = settings;
     message_.clear();
@@ -57,7 +57,7 @@ void Viewer::change(const std::string& gesture, const ViewSettings& settings) {
     drawing_.ask(session_);
 }
 
-void Viewer::move(const CameraMove& move) {
+void SceneViewer::move(const CameraMove& move) {
     attempt([&] {
         const std::string pointer = camera_pointer(settings());
         const Json* camera = find_value(scene(), pointer);
@@ -69,22 +69,22 @@ void Viewer::move(const CameraMove& move) {
     });
 }
 
-void Viewer::set(const std::string& pointer, const Json& value) {
+void SceneViewer::set(const std::string& pointer, const Json& value) {
     attempt([&] {
         set_value(session_, pointer, value);
         drawing_.ask(session_);
     });
 }
 
-void Viewer::undo_step() {
+void SceneViewer::undo_step() {
     if (undo(session_)) drawing_.ask(session_);
 }
 
-void Viewer::redo_step() {
+void SceneViewer::redo_step() {
     if (redo(session_)) drawing_.ask(session_);
 }
 
-void Viewer::reload_files() {
+void SceneViewer::reload_files() {
     attempt([&] {
         reload(session_, source_);
         reach_ = session_.reach;
@@ -92,14 +92,14 @@ void Viewer::reload_files() {
     });
 }
 
-void Viewer::look_for_changes() {
+void SceneViewer::look_for_changes() {
     const auto now = Clock::now();
     if (seconds_between(looked_, now) < 0.5) return;
     looked_ = now;
     if (files_changed(session_)) reload_files();
 }
 
-void Viewer::show_on(const std::string& display_server) {
+void SceneViewer::show_on(const std::string& display_server) {
     const auto stream = std::make_shared<DisplayStream>(display_server, session_.file);
     drawing_.with_painter([&](Painter& painter) {
         painter.watch([stream](const StagePictures& stage, std::vector<std::string>& warnings) {
@@ -109,12 +109,12 @@ void Viewer::show_on(const std::string& display_server) {
     drawing_.ask(session_);
 }
 
-void Viewer::play(bool runs, bool turns) {
+void SceneViewer::play(bool runs, bool turns) {
     playing_ = {runs, turns, Clock::now()};
     end_gesture(session_);
 }
 
-void Viewer::advance() {
+void SceneViewer::advance() {
     const auto drawn = drawing_.latest();
     // A state that is not shown yet must be, or nothing would move.
     if (!playing_.runs || !drawn || !drawing_.is_shown()) return;
@@ -140,7 +140,7 @@ void Viewer::advance() {
     change("play", next);
 }
 
-void Viewer::save_or_throw(const std::string& file) {
+void SceneViewer::save_or_throw(const std::string& file) {
     if (ends_in(file, ".json")) {
         replace_text_file(file, session_text(session_));
     } else if (ends_in(file, ".svg")) {
@@ -156,12 +156,12 @@ void Viewer::save_or_throw(const std::string& file) {
     }
 }
 
-bool Viewer::save(const std::string& file) {
+bool SceneViewer::save(const std::string& file) {
     if (attempt([&] { save_or_throw(file); })) message_ = "saved " + file;
     return !failed_;
 }
 
-std::string Viewer::error() const {
+std::string SceneViewer::error() const {
     if (failed_) return message_;
     const auto drawn = drawing_.latest();
     return drawn ? drawn->error : "";

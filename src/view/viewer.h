@@ -21,10 +21,10 @@ struct Playing {
 };
 
 /// What goes wrong in an action stands in `message`, for the window to show; nothing is thrown.
-class Viewer {
+class SceneViewer {
   public:
     /// Reads the scene and begins to draw it. Throws InputError as load_scene does.
-    explicit Viewer(const SceneRequest& source);
+    explicit SceneViewer(const SceneRequest& source);
 
     const Session& session() const { return session_; }
     const ViewSettings& settings() const { return session_.now.settings; }

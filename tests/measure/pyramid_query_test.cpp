@@ -44,7 +44,7 @@ TEST_CASE("a packet finds the cells whose boxes hold its points, near enough, an
         const int width = 1 + static_cast<int>(random() % 40), height = 1 + static_cast<int>(random() % 30);
         const Image image = bent_image(random, width, height);
         const FieldPyramid index(make_seen_field(image, "reflect").value());
-        const auto packet = std::make_unique<PointPacket>();
+        const auto packet = std::make_unique<FieldPointPacket>();
         std::vector<FieldSample> points;
         std::vector<double> reach;
         for (std::size_t i = 0; i < image.pixels() && !packet->is_full(); i += 1 + random() % 9) {
@@ -80,7 +80,7 @@ TEST_CASE("a packet drops no point that a cell's reach holds, and few others",
     for (int trial = 0; trial < 40; ++trial) {
         const Image image = bent_image(random, 20, 15);
         const FieldPyramid index(make_seen_field(image, "reflect").value());
-        const auto packet = std::make_unique<PointPacket>();
+        const auto packet = std::make_unique<FieldPointPacket>();
         std::vector<FieldSample> points;
         for (std::size_t i = 0; i < image.pixels() && !packet->is_full(); i += 1 + random() % 4) {
             if (!index.field.sees(i)) continue;

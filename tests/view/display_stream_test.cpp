@@ -177,7 +177,7 @@ TEST_CASE("a display server that goes away in the middle of a tile is a warning,
     const SceneRequest request = ball_request(trilens_test::scratch_dir("view_display_away"));
     for (const std::size_t most : {1, 40, 5000}) {
         SmallServer server(most);
-        Viewer viewer(request);
+        SceneViewer viewer(request);
         viewer.show_on(server.address());
         REQUIRE(viewer.drawing().wait_done(600));
         CHECK(server.received().size() == most);
@@ -192,14 +192,14 @@ TEST_CASE("a display server that goes away in the middle of a tile is a warning,
         REQUIRE_FALSE(drawn->warnings.empty());
         CHECK(drawn->warnings.back().find("went away") != std::string::npos);
     }
-    Viewer viewer(request);
+    SceneViewer viewer(request);
     CHECK_THROWS_AS(viewer.show_on("localhost"), UsageError);
     CHECK_THROWS_AS(viewer.show_on("127.0.0.1:1"), OutputError);
 }
 
 TEST_CASE("a number that is none and an optic that nothing sees leave a picture", "[view][bad-input]") {
     const SceneRequest request = ball_request(trilens_test::scratch_dir("view_bad_numbers"));
-    Viewer viewer(request);
+    SceneViewer viewer(request);
     REQUIRE(viewer.drawing().wait_done(600));
     const Json before = viewer.scene();
     viewer.set("/cameras/0/yfov", std::nan(""));

@@ -95,7 +95,7 @@ TEST_CASE("what differs between two states alone decides what is read again, nev
 
 TEST_CASE("a state that is no scene shows its error and its place beside the last good picture", "[view]") {
     const std::string folder = trilens_test::scratch_dir("view_errors");
-    Viewer viewer(small_request(folder));
+    SceneViewer viewer(small_request(folder));
     REQUIRE(viewer.drawing().wait_done(60));
     const auto good = viewer.drawn();
     REQUIRE(good->left);
@@ -129,7 +129,7 @@ TEST_CASE("a state that is no scene shows its error and its place beside the las
 TEST_CASE("states that change faster than pictures come still bring pictures, and the last one in full",
           "[view]") {
     const std::string folder = trilens_test::scratch_dir("view_fast");
-    Viewer viewer(small_request(folder));
+    SceneViewer viewer(small_request(folder));
     for (int i = 0; i < 300; ++i) {
         viewer.move({CameraMove::Kind::kOrbit, {1.2, 0, 0}});
         if (i % 10 == 0) viewer.drawing().wait_shown(0.02);
@@ -218,7 +218,7 @@ TEST_CASE("a coarse picture is the trace of fewer pixels, and all pixels follow 
 
 TEST_CASE("while states change no picture of many samples is begun", "[view]") {
     const std::string folder = trilens_test::scratch_dir("view_rest");
-    Viewer viewer(small_request(folder));
+    SceneViewer viewer(small_request(folder));
     REQUIRE(viewer.drawing().wait_done(60));
     for (int turn = 0; turn < 30; ++turn) {
         const Stopwatch watch;
@@ -290,7 +290,7 @@ TEST_CASE("scripts are refused at the step that is none", "[view]") {
 TEST_CASE("a script turns the camera, saves the scene as it then is, and random hands break nothing",
           "[view]") {
     const std::string folder = trilens_test::scratch_dir("view_script");
-    Viewer viewer(small_request(folder));
+    SceneViewer viewer(small_request(folder));
     Script script("steps.json", R"([{"show": {"n": 4, "birdsEye": true, "facets": true, "wipe": 0.5}},
         {"orbit": [90, 0], "frames": 6}, {"wait": "done"}, {"save": ")" +
                                     folder + R"(/turned.json"},

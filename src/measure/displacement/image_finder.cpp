@@ -81,8 +81,9 @@ class CandidateSearch {
     explicit CandidateSearch(const ImageFinder& finder) : finder_(finder) {}
 
     void add_all(std::span<ImageQuery* const> waiting, Candidates& candidates) {
-        for (std::size_t first = 0; first < waiting.size(); first += PointPacket::kPoints)
-            add(waiting.subspan(first, std::min(PointPacket::kPoints, waiting.size() - first)), candidates);
+        for (std::size_t first = 0; first < waiting.size(); first += FieldPointPacket::kPoints)
+            add(waiting.subspan(first, std::min(FieldPointPacket::kPoints, waiting.size() - first)),
+                candidates);
         candidates.first.push_back(candidates.cells.size());
     }
 
@@ -110,9 +111,9 @@ class CandidateSearch {
     }
 
     const ImageFinder& finder_;
-    PointPacket packet_;
+    FieldPointPacket packet_;
     std::vector<CellOfMany> cells_;
-    std::array<std::vector<CandidateCell>, PointPacket::kPoints> found_;
+    std::array<std::vector<CandidateCell>, FieldPointPacket::kPoints> found_;
 };
 
 }  // namespace

@@ -141,7 +141,7 @@ struct FieldPyramid {
 
 /// Points that are looked for, each from its pixel and as far as it may lie from there; side by side in
 /// lanes.
-class PointPacket {
+class FieldPointPacket {
   public:
     static constexpr std::size_t kPoints = 64;
 
@@ -165,10 +165,10 @@ struct CellOfMany {
 
 /// All cells whose own box (FieldPyramid::may_show) holds points that they are near enough to; now and then
 /// one that is a little too far away.
-void find_cells(const FieldPyramid& index, const PointPacket& packet, std::vector<CellOfMany>& cells);
+void find_cells(const FieldPyramid& index, const FieldPointPacket& packet, std::vector<CellOfMany>& cells);
 
 /// Those of `points` that the cell may hold (FieldCellBounds::may_hold), and now and then one that it just
 /// does not.
-std::uint64_t held_by(const FieldCellBounds& reach, const PointPacket& packet, std::uint64_t points);
+std::uint64_t held_by(const FieldCellBounds& reach, const FieldPointPacket& packet, std::uint64_t points);
 
 }  // namespace trilens

@@ -18,7 +18,7 @@ using Truth = hn::Mask<Tag>;
 constexpr Tag kTag;
 constexpr std::size_t kWidth = hn::MaxLanes(kTag);
 constexpr std::uint64_t kAll = (1ull << kWidth) - 1;
-static_assert(PointPacket::kPoints % kWidth == 0);
+static_assert(FieldPointPacket::kPoints % kWidth == 0);
 
 HWY_INLINE Number number(float x) {
     return hn::Set(kTag, x);
@@ -35,7 +35,7 @@ HWY_INLINE std::uint64_t bits_of(Truth truth) {
 struct Points {
     Number point[3], column, row, most;
 };
-HWY_INLINE Points points_at(const PointPacket& packet, std::size_t first) {
+HWY_INLINE Points points_at(const FieldPointPacket& packet, std::size_t first) {
     const auto load = [&](const float* from) { return hn::Load(kTag, from + first); };
     return {{load(packet.point[0]), load(packet.point[1]), load(packet.point[2])},
             load(packet.pixel[0]),
@@ -69,8 +69,9 @@ HWY_INLINE Truth held(const Points& points, const BoxQuad& quad, int child, cons
     return hn::And(inside, hn::Le(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), points.most));
 }
 
-void find_cells_here(const FieldPyramid& index, const PointPacket& packet, std::vector<CellOfMany>& cells) {
-    const std::uint64_t all = packet.count == PointPacket::kPoints ? ~0ull : (1ull << packet.count) - 1;
+void find_cells_here(const FieldPyramid& index, const FieldPointPacket& packet,
+                     std::vector<CellOfMany>& cells) {
+    const std::uint64_t all = packet.count == FieldPointPacket::kPoints ? ~0ull : (1ull << packet.count) - 1;
     Square stack[4 * 32];  // four children per level, and fewer than 32 levels
     std::size_t count = 0;
     stack[count++] = {static_cast<int>(index.levels.size()), 0, 0, all};
@@ -98,7 +99,8 @@ void find_cells_here(const FieldPyramid& index, const PointPacket& packet, std::
     }
 }
 
-std::uint64_t held_by_here(const FieldCellBounds& reach, const PointPacket& packet, std::uint64_t asked) {
+std::uint64_t held_by_here(const FieldCellBounds& reach, const FieldPointPacket& packet,
+                           std::uint64_t asked) {
     // More than the products round by.
     const Number error_bound = number(4e-7F), least = number(1e-37F);
     std::uint64_t held = 0;
@@ -137,7 +139,7 @@ HWY_EXPORT(find_cells_here);
 HWY_EXPORT(held_by_here);
 }  // namespace descent
 
-void PointPacket::add(const FieldSample& wanted, double squared_reach) {
+void FieldPointPacket::add(const FieldSample& wanted, double squared_reach) {
     for (int k = 0; k < 3; ++k) point[k][count] = static_cast<float>(wanted.point[k]);
     pixel[0][count] = static_cast<float>(wanted.column);
     pixel[1][count] = static_cast<float>(wanted.row);
@@ -146,12 +148,12 @@ void PointPacket::add(const FieldSample& wanted, double squared_reach) {
     ++count;
 }
 
-void find_cells(const FieldPyramid& index, const PointPacket& packet, std::vector<CellOfMany>& cells) {
+void find_cells(const FieldPyramid& index, const FieldPointPacket& packet, std::vector<CellOfMany>& cells) {
     using namespace descent;
     HWY_DYNAMIC_DISPATCH(find_cells_here)(index, packet, cells);
 }
 
-std::uint64_t held_by(const FieldCellBounds& reach, const PointPacket& packet, std::uint64_t points) {
+std::uint64_t held_by(const FieldCellBounds& reach, const FieldPointPacket& packet, std::uint64_t points) {
     using namespace descent;
     return HWY_DYNAMIC_DISPATCH(held_by_here)(reach, packet, points);
 }

@@ -49,7 +49,7 @@ void path_words(const Drawn& drawn, const PathLine& path) {
                     corner.medium == kNone ? "" : (", in " + medium_name(drawn, corner.medium)).c_str());
 }
 
-void mouse_on_birds_eye(Viewer& viewer, const PicturePlace& place) {
+void mouse_on_birds_eye(SceneViewer& viewer, const PicturePlace& place) {
     const ImGuiIO& io = ImGui::GetIO();
     ViewSettings next = viewer.settings();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
@@ -70,7 +70,7 @@ void mouse_on_birds_eye(Viewer& viewer, const PicturePlace& place) {
 
 }  // namespace
 
-void birds_eye_area(Viewer& viewer, TextureStore& textures, float height) {
+void birds_eye_area(SceneViewer& viewer, TextureStore& textures, float height) {
     const auto drawn = viewer.drawn();
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float all = ImGui::GetContentRegionAvail().x, width = std::min(0.6f * all, height * 4 / 3);

@@ -18,7 +18,7 @@ auto key_of(ImGuiKey key) {
 #endif
 }
 
-void keyboard(Viewer& viewer) {
+void keyboard(SceneViewer& viewer) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput) return;
     const bool z = ImGui::IsKeyPressed(key_of(ImGuiKey_Z));
@@ -34,7 +34,7 @@ void keyboard(Viewer& viewer) {
 }
 
 /// What went wrong, or what the pictures leave out; the last good picture stays beside it.
-void messages(const Viewer& viewer) {
+void messages(const SceneViewer& viewer) {
     const std::string error = viewer.error();
     const auto drawn = viewer.drawn();
     if (!error.empty()) {
@@ -71,7 +71,7 @@ PicturePlace fitted_picture(float x, float y, float width, float height, int fil
     return place;
 }
 
-void build_interface(Viewer& viewer, InterfaceState& state, TextureStore& textures) {
+void build_interface(SceneViewer& viewer, InterfaceState& state, TextureStore& textures) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     keyboard(viewer);
     ImGui::SetNextWindowPos({0, 0});

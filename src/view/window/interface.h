@@ -49,16 +49,16 @@ struct InterfaceState {
 inline constexpr int kScreenGrey = 16;  // of 255
 
 /// Builds one frame of the interface between ImGui::NewFrame and ImGui::Render, and does what the user asks.
-void build_interface(Viewer& viewer, InterfaceState& state, TextureStore& textures);
+void build_interface(SceneViewer& viewer, InterfaceState& state, TextureStore& textures);
 
 // Its parts; each fills what ImGui has open.
 
 /// The picture with its overlays, wipe and marks, and the mouse on it.
-void picture_area(Viewer& viewer, InterfaceState& state, TextureStore& textures, float height);
+void picture_area(SceneViewer& viewer, InterfaceState& state, TextureStore& textures, float height);
 /// The bird's-eye view, and the paths that it shows as words.
-void birds_eye_area(Viewer& viewer, TextureStore& textures, float height);
+void birds_eye_area(SceneViewer& viewer, TextureStore& textures, float height);
 /// Settings, numbers, lists and buttons.
-void settings_panel(Viewer& viewer, InterfaceState& state);
+void settings_panel(SceneViewer& viewer, InterfaceState& state);
 
 /// Fits a film into a rectangle of the screen: centred, its pixels square.
 PicturePlace fitted_picture(float x, float y, float width, float height, int film_width, int film_height);

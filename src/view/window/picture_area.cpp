@@ -91,7 +91,7 @@ void draw_names(const PicturePlace& place, const ViewSettings& settings) {
     }
 }
 
-void mouse_on_picture(Viewer& viewer, InterfaceState& state, const PicturePlace& place) {
+void mouse_on_picture(SceneViewer& viewer, InterfaceState& state, const PicturePlace& place) {
     const ImGuiIO& io = ImGui::GetIO();
     const ViewSettings& settings = viewer.settings();
     const Vec2 mouse(io.MousePos.x, io.MousePos.y), film = place.on_film(mouse);
@@ -132,7 +132,7 @@ void mouse_on_picture(Viewer& viewer, InterfaceState& state, const PicturePlace&
 
 }  // namespace
 
-void picture_area(Viewer& viewer, InterfaceState& state, TextureStore& textures, float height) {
+void picture_area(SceneViewer& viewer, InterfaceState& state, TextureStore& textures, float height) {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
     if (width < 2 || height < 2) return;

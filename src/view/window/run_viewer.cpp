@@ -80,7 +80,7 @@ class MemoryWindow {
         io.DeltaTime = 1.0f / 60;
         io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // more than 65536 corners
     }
-    void frame(Viewer& viewer, InterfaceState& state) {
+    void frame(SceneViewer& viewer, InterfaceState& state) {
         ImGui::NewFrame();
         build_interface(viewer, state, textures_);
         ImGui::Render();
@@ -98,14 +98,14 @@ struct ViewerRun {
     std::vector<std::string> written;
     std::string gl;  // empty: no window
 
-    void saw(const Viewer& viewer) {
+    void saw(const SceneViewer& viewer) {
         ++window_frames;
         const auto drawn = viewer.drawn();
         if (!first_picture && drawn && drawn->left) first_picture = seconds_since(begun);
     }
 };
 
-void window_frame(GlScreen& screen, Viewer& viewer, InterfaceState& state, ViewerRun& run,
+void window_frame(GlScreen& screen, SceneViewer& viewer, InterfaceState& state, ViewerRun& run,
                   Pixels* read = nullptr) {
     if (!screen.has_pixels()) return;
     screen.begin_frame();
@@ -158,12 +158,12 @@ double percentile(std::vector<double> values, double percent) {
 }
 
 /// What the window has shown of what goes on without: a display server that went away.
-void warn_of(const Viewer& viewer, Console& console) {
+void warn_of(const SceneViewer& viewer, Console& console) {
     if (const auto drawn = viewer.drawn())
         for (const std::string& warning : drawn->warnings) console.warn(warning);
 }
 
-Answer answer_of(Viewer& viewer, const Script* script, const ViewerRun& run) {
+Answer answer_of(SceneViewer& viewer, const Script* script, const ViewerRun& run) {
     Answer answer;
     answer.is_report = true;
     const DrawTimes times = viewer.drawing().times();
@@ -222,7 +222,7 @@ Answer run_viewer(const ViewOptions& options, Console& console) {
     else
         memory.emplace(size);
 
-    Viewer viewer(scene_request(options.scene));
+    SceneViewer viewer(scene_request(options.scene));
     ViewSettings first = viewer.settings();
     if (!options.scene.camera.empty()) {
         const Json name = options.scene.camera;

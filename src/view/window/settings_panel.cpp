@@ -51,7 +51,7 @@ bool slide(const char* label, double& value, double least, double most, const ch
     return true;
 }
 
-void state_words(const Viewer& viewer, const InterfaceState& state) {
+void state_words(const SceneViewer& viewer, const InterfaceState& state) {
     const auto drawn = viewer.drawn();
     if (!drawn) return ImGui::TextDisabled("drawing the first picture ...");
     std::string stage = name_of(drawn->stage);
@@ -70,7 +70,7 @@ void state_words(const Viewer& viewer, const InterfaceState& state) {
                            known.displacement->p95, known.lost);
 }
 
-void camera_choice(Viewer& viewer) {
+void camera_choice(SceneViewer& viewer) {
     const Json& cameras = viewer.scene().at("cameras");
     ViewSettings next = viewer.settings();
     const auto name = [&](std::size_t i) {
@@ -87,7 +87,7 @@ void camera_choice(Viewer& viewer) {
     ImGui::EndCombo();
 }
 
-void projection(Viewer& viewer) {
+void projection(SceneViewer& viewer) {
     if (!ImGui::CollapsingHeader("projection", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ViewSettings next = viewer.settings();
     camera_choice(viewer);
@@ -109,7 +109,7 @@ void projection(Viewer& viewer) {
         viewer.set("/render/maxDepth", deep);
 }
 
-void colours(Viewer& viewer) {
+void colours(SceneViewer& viewer) {
     if (!ImGui::CollapsingHeader("colours", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ViewSettings next = viewer.settings();
     if (slide("exposure", next.tone.exposure, -10, 10, "%.2f")) viewer.change("exposure", next);
@@ -128,7 +128,7 @@ void colours(Viewer& viewer) {
     }
 }
 
-void comparison(Viewer& viewer) {
+void comparison(SceneViewer& viewer) {
     if (!ImGui::CollapsingHeader("comparison", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ViewSettings next = viewer.settings();
     if (choose("left", next.left)) viewer.change("left", next);
@@ -139,7 +139,7 @@ void comparison(Viewer& viewer) {
         viewer.change("scale", next);
 }
 
-void overlays(Viewer& viewer) {
+void overlays(SceneViewer& viewer) {
     if (!ImGui::CollapsingHeader("overlays", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ViewSettings next = viewer.settings();
     bool changed = ImGui::Checkbox("facets", &next.overlays.facets);
@@ -165,7 +165,7 @@ void overlays(Viewer& viewer) {
     if (changed) viewer.change("", next);
 }
 
-void one_number(Viewer& viewer, InterfaceState& state) {
+void one_number(SceneViewer& viewer, InterfaceState& state) {
     const std::string& pointer = state.chosen_number;
     const Json* found = find_value(viewer.scene(), pointer);
     if (!found || !found->is_number()) return;
@@ -183,7 +183,7 @@ void one_number(Viewer& viewer, InterfaceState& state) {
         viewer.set(pointer, range.whole ? Json(static_cast<long long>(std::llround(value))) : Json(value));
 }
 
-void numbers(Viewer& viewer, InterfaceState& state) {
+void numbers(SceneViewer& viewer, InterfaceState& state) {
     if (!ImGui::CollapsingHeader("numbers of the scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
     if (!state.chosen_number.empty()) one_number(viewer, state);
     ImGui::SetNextItemWidth(-1);
@@ -196,7 +196,7 @@ void numbers(Viewer& viewer, InterfaceState& state) {
     ImGui::EndChild();
 }
 
-void lists(const Viewer& viewer) {
+void lists(const SceneViewer& viewer) {
     const auto drawn = viewer.drawn();
     if (drawn && ImGui::CollapsingHeader("optics"))
         for (const OpticInfo& optic : drawn->optics)
@@ -209,7 +209,7 @@ void lists(const Viewer& viewer) {
                                                      : material.value("type", "").c_str());
 }
 
-void files_and_time(Viewer& viewer, InterfaceState& state) {
+void files_and_time(SceneViewer& viewer, InterfaceState& state) {
     if (!ImGui::CollapsingHeader("time and files", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const auto drawn = viewer.drawn();
     if (drawn && drawn->animation) {
@@ -235,7 +235,7 @@ void files_and_time(Viewer& viewer, InterfaceState& state) {
 
 }  // namespace
 
-void settings_panel(Viewer& viewer, InterfaceState& state) {
+void settings_panel(SceneViewer& viewer, InterfaceState& state) {
     state_words(viewer, state);
     ImGui::PushItemWidth(170);
     projection(viewer);
