@@ -105,6 +105,23 @@ OIIO::ImageSpec checked_header(const OIIO::ImageInput& in, const std::string& na
     return spec;
 }
 
+/// Whether colours come multiplied by alpha although a file of this kind does not have them so:
+/// OpenImageIO 2.4 does that to WebP whatever the hints say.
+bool is_multiplied_by_reader(const OIIO::ImageInput& in, const OIIO::ImageSpec& spec) {
+    return in.format_name() == std::string_view("webp") && spec.alpha_channel >= 0 &&
+           spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+}
+
+/// Undoes it; where nothing shows, no colour is left.
+void divide_by_alpha(const OIIO::ImageSpec& spec, std::vector<float>& values) {
+    const auto channels = static_cast<std::size_t>(spec.nchannels),
+               alpha = static_cast<std::size_t>(spec.alpha_channel);
+    for (std::size_t first = 0; first < values.size(); first += channels)
+        for (std::size_t c = 0; c < channels; ++c)
+            if (c != alpha && values[first + alpha] > 0)
+                values[first + c] = std::min(1.0f, values[first + c] / values[first + alpha]);
+}
+
 /// Reads the first picture of an open file.
 std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string& name,
                                          std::size_t encoded_size) {
@@ -114,6 +131,7 @@ std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string
                                   static_cast<std::size_t>(spec.nchannels));
         if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, values.data()) || in.has_error())
             throw InputError(name, "", "is truncated or damaged: " + library_reason(in.geterror()));
+        if (is_multiplied_by_reader(in, spec)) divide_by_alpha(spec, values);
         for (const float value : values)
             if (!std::isfinite(value)) throw InputError(name, "", "holds a value that is not finite");
         return texture_of(spec, values);
@@ -135,6 +153,7 @@ std::string name_for_format(std::span<const unsigned char> encoded) {
     const std::string_view start(reinterpret_cast<const char*>(encoded.data()),
                                  std::min<std::size_t>(encoded.size(), 16));
     const auto starts_with = [&](std::string_view magic) { return start.substr(0, magic.size()) == magic; };
+    if (starts_with("RIFF") && start.size() >= 12 && start.substr(8, 4) == "WEBP") return "memory.webp";
     if (starts_with("\x89PNG\r\n\x1a\n")) return "memory.png";
     if (starts_with("\xff\xd8\xff")) return "memory.jpg";
     if (starts_with("\x76\x2f\x31\x01")) return "memory.exr";
@@ -289,7 +308,7 @@ HeightGrid heights_of(const std::string& file) {
 std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, const std::string& name) {
     refuse_card_textures({reinterpret_cast<const char*>(encoded.data()), encoded.size()}, name);
     const std::string format = name_for_format(encoded);
-    if (format.empty()) throw InputError(name, "", "is neither PNG, JPEG, OpenEXR nor Radiance");
+    if (format.empty()) throw InputError(name, "", "is neither PNG, JPEG, WebP, OpenEXR nor Radiance");
     OIIO::Filesystem::IOMemReader memory(encoded.data(), encoded.size());
     OIIO::Filesystem::IOProxy* proxy = &memory;
     // The proxy goes in as a hint: open() of OpenImageIO 2.4 forgets a proxy argument where there are hints.

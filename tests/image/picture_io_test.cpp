@@ -244,10 +244,32 @@ TEST_CASE("textures for graphics cards are refused by the name of their kind", "
         // Cut off within the signature it is nothing.
         const std::vector<unsigned char> cut(magic.begin(), magic.end() - 1);
         CHECK(refusal([&] { decode_texture(cut, "cut"); }) ==
-              "cut: is neither PNG, JPEG, OpenEXR nor Radiance");
+              "cut: is neither PNG, JPEG, WebP, OpenEXR nor Radiance");
     }
 }
 
 TEST_CASE("the library says which it is", "[image]") {
     CHECK(image_library_version().find("OpenImageIO 2.") == 0);
+}
+
+TEST_CASE("WebP is read from memory, its colours not multiplied by alpha", "[image]") {
+    // 2 x 2, lossless: red, green of alpha 128; blue, white of alpha 0.
+    const std::vector<unsigned char> encoded = {
+        0x52, 0x49, 0x46, 0x46, 0x30, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50,
+        0x38, 0x4c, 0x23, 0x00, 0x00, 0x00, 0x2f, 0x01, 0x40, 0x00, 0x10, 0x1f, 0x30, 0xff,
+        0x02, 0x82, 0x22, 0xff, 0x47, 0xdb, 0x7f, 0x81, 0x00, 0xc1, 0xb9, 0x73, 0xc1, 0x8d,
+        0x2a, 0x41, 0x4d, 0xdb, 0x06, 0x2c, 0x7e, 0x93, 0x8e, 0x88, 0xfe, 0xc7, 0x01, 0x00};
+    const std::shared_ptr<const Texture> texture = decode_texture(encoded, "a.glb image 0");
+    CHECK(texture->width == 2);
+    CHECK(texture->height == 2);
+    CHECK(texel_at(*texture, 0, 0) == Vec3(1, 0, 0));
+    CHECK(texel_at(*texture, 1, 0) == Vec3(0, 1, 0));
+    CHECK(texel_at(*texture, 0, 1) == Vec3(0, 0, 1));
+    REQUIRE(texture->alpha.size() == 4);
+    CHECK(texture->alpha[0] == 1);
+    CHECK(std::fabs(texture->alpha[1] - 128.0f / 255) < 1e-6f);
+    CHECK(texture->alpha[3] == 0);
+
+    const std::vector<unsigned char> cut(encoded.begin(), encoded.begin() + 40);
+    CHECK_THROWS_AS(decode_texture(cut, "a.glb image 0"), InputError);
 }

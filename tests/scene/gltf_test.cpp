@@ -179,6 +179,28 @@ TEST_CASE("a texture of KTX2 alone is ignored with a word, one with another pict
     CHECK(beside.materials[0].written.at("baseColorTexture").at("image") == 0);
 }
 
+TEST_CASE("a texture has the picture of EXT_texture_webp where it has one", "[scene][bad-input]") {
+    const std::string folder = scratch_dir("scene_gltf_webp");
+    const auto file_with = [&](const std::string& texture) {
+        Square square;
+        square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";
+        square.more =
+            R"(,"extensionsUsed":["EXT_texture_webp"],"extensionsRequired":["EXT_texture_webp"],"materials":[{"name":
+            "painted","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{)" +
+            texture + R"(}],"images":[{"uri":"a.png"},{"uri":"a.webp"}])";
+        return write_square(folder, gltf_text(square));
+    };
+    for (const std::string before : {"", R"("source":0,)"}) {
+        const GltfModel model =
+            read_gltf(file_with(before + R"("extensions":{"EXT_texture_webp":{"source":1}})"));
+        CHECK(model.materials[0].written.at("baseColorTexture").at("image") == 1);
+        CHECK(model.warnings.empty());
+    }
+    const std::string place = ": /textures/0/extensions/EXT_texture_webp: ";
+    CHECK(read_error(file_with(R"("extensions":{"EXT_texture_webp":{}})")) == place + "has no source");
+    CHECK(begins_with(read_error(file_with(R"("extensions":{"EXT_texture_webp":{"source":2}})")), place));
+}
+
 TEST_CASE("TEXCOORD_0 and TEXCOORD_1 are two sets of uv, and materials say which", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_two_uvs");
     Square square;

@@ -189,7 +189,7 @@ class MaterialReader {
         if (texture < 0) return nullptr;
         const std::string place = "/textures/" + std::to_string(texture);
         const tinygltf::Texture& in = source_.model.textures[static_cast<std::size_t>(texture)];
-        const int image = source_.checked(in.source, into_.images.size(), place, "image");
+        const int image = picture_of(in, place);
         if (image < 0) {
             source_.warn(in.extensions.count("KHR_texture_basisu") > 0
                              ? "a texture of KTX2 alone (KHR_texture_basisu) is ignored: KTX2 is not read"
@@ -208,6 +208,19 @@ class MaterialReader {
         if (set == 1) written["texCoord"] = sampler.uv_set = 1;
         if (key == "pbrMetallicRoughness/baseColorTexture") out_.material.base_color_sampler = sampler;
         return written;
+    }
+
+    /// The index of a texture's picture: that of EXT_texture_webp where it has one, for which its own stands
+    /// in where WebP is not read; negative: none.
+    int picture_of(const tinygltf::Texture& texture, const std::string& place) {
+        const auto webp = texture.extensions.find("EXT_texture_webp");
+        if (webp == texture.extensions.end())
+            return source_.checked(texture.source, into_.images.size(), place, "image");
+        const std::string webp_place = place + "/extensions/EXT_texture_webp";
+        if (!webp->second.IsObject() || !webp->second.Get("source").IsInt())
+            source_.fail(webp_place, "has no source");
+        return source_.checked(webp->second.Get("source").GetNumberAsInt(), into_.images.size(), webp_place,
+                               "image");
     }
 
     void read_sampler(int index, TextureSampler& sampler, Json& written) {

@@ -39,6 +39,9 @@ Json json_of_gltf(const tinygltf::Value& value);
 double gltf_number(const GltfSource& source, const Json& number, double low, double high,
                    const std::string& place);
 
+/// Warns of extensions that are not known. Throws InputError where the file requires one.
+void check_gltf_extensions(GltfSource& source);
+
 void read_gltf_materials(GltfSource& source, GltfModel& into);
 /// Cameras and KHR_lights_punctual.
 void read_gltf_views(GltfSource& source, GltfModel& into);

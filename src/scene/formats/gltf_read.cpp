@@ -23,7 +23,7 @@ class Reader {
     explicit Reader(GltfSource& source) : source_(source), in_(source.model) {}
 
     GltfModel read() {
-        check_extensions();
+        check_gltf_extensions(source_);
         find_buffer_files();
         read_images();
         read_gltf_materials(source_, out_);
@@ -45,20 +45,6 @@ class Reader {
     void warn(const std::string& message) { source_.warn(message); }
     int checked(int index, std::size_t count, const std::string& place, const char* what) const {
         return source_.checked(index, count, place, what);
-    }
-
-    void check_extensions() {
-        static const std::set<std::string> known = {
-            "KHR_materials_unlit",      "KHR_mesh_quantization",
-            "KHR_texture_transform",    "KHR_lights_punctual",
-            "KHR_materials_ior",        "KHR_materials_transmission",
-            "KHR_materials_volume",     "KHR_materials_specular",
-            "KHR_materials_dispersion", "KHR_materials_emissive_strength"};
-        for (const std::string& name : in_.extensionsRequired)
-            if (known.count(name) == 0)
-                fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
-        for (const std::string& name : in_.extensionsUsed)
-            if (known.count(name) == 0) warn("the extension '" + name + "' is ignored");
     }
 
     void find_buffer_files() {
