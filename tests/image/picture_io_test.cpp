@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "base/image/texture_lookup.h"
 #include "base/util/error.h"
 #include "image/image_io.h"
 #include "support/test.h"
