@@ -44,14 +44,18 @@ class SharedTrees final : public Bfr::SurfaceFactoryCache {
     std::optional<std::size_t> init(const Bfr::SurfaceFactory& factory, int face,
                                     Bfr::Surface<double>& surface) {
         tree_ = Tree::kShared;
+        key_.reset();
         if (!factory.InitVertexSurface(face, &surface)) return std::nullopt;
         if (tree_ == Tree::kAdded) bytes_ += tree_bytes(surface);
         return tree_ == Tree::kOwn ? tree_bytes(surface) : 0;
     }
     std::size_t bytes() const { return bytes_; }
+    /// Of the surface that this thread made last: what tells its tree from others; none where it has none.
+    static std::optional<std::uint64_t> key() { return key_; }
 
   protected:
     DataType Find(const KeyType& key) const override {
+        key_ = key;
         const std::shared_lock lock(mutex_);
         return find(key);
     }
@@ -68,12 +72,14 @@ class SharedTrees final : public Bfr::SurfaceFactoryCache {
     /// Where the tree went that this thread made last.
     enum class Tree { kShared, kAdded, kOwn };
     static thread_local Tree tree_;
+    static thread_local std::optional<std::uint64_t> key_;
 
     mutable std::shared_mutex mutex_;
     std::atomic<std::size_t> bytes_{0};
 };
 
 thread_local SharedTrees::Tree SharedTrees::tree_ = SharedTrees::Tree::kShared;
+thread_local std::optional<std::uint64_t> SharedTrees::key_;
 
 // --- Patches ---
 
@@ -84,6 +90,7 @@ struct Patch {
     std::vector<double> points;
     Vec3 origin{0};
     double extent = 0;
+    std::optional<std::uint64_t> kind;
     std::size_t own_tree = 0;  // bytes of a tree that no other face shares
 
     std::size_t bytes() const {
@@ -128,6 +135,7 @@ struct LimitPatches::Impl {
         const std::optional<std::size_t> own_tree = trees.init(factory, face, patch.surface);
         TRILENS_CHECK(own_tree, "only faces with a limit surface are evaluated");
         patch.own_tree = *own_tree;
+        if (!patch.surface.IsRegular() && !patch.surface.IsLinear()) patch.kind = SharedTrees::key();
 
         std::vector<int> control(static_cast<std::size_t>(patch.surface.GetNumControlPoints()));
         patch.surface.GetControlPointIndices(control.data());
@@ -142,6 +150,12 @@ struct LimitPatches::Impl {
         }
         patch.surface.ComputePatchPoints(patch.points.data(), 3);
         return patch;
+    }
+
+    template <class Use>
+    auto with(int face, const Use& use) {
+        const auto make = [this](std::size_t f) { return make_patch(static_cast<int>(f)); };
+        return patches.with(static_cast<std::size_t>(face), make, use);
     }
 };
 
@@ -163,8 +177,7 @@ std::size_t LimitPatches::bytes() const {
 template <bool kSecondOrder>
 LimitPatches::Point LimitPatches::eval_to_order(int face, int sub_face, const Vec2& uv) const {
     const FaceTree::Leaf leaf = impl_->mesh.tree.leaf(face, sub_face, uv);
-    const auto make = [this](std::size_t f) { return impl_->make_patch(static_cast<int>(f)); };
-    return impl_->patches.with(static_cast<std::size_t>(leaf.face), make, [&](const Patch& patch) {
+    return impl_->with(leaf.face, [&](const Patch& patch) {
         Point result;
         result.extent = patch.extent;
         SurfacePoint& point = result.point;
@@ -187,6 +200,35 @@ LimitPatches::Point LimitPatches::eval(int face, int sub_face, const Vec2& uv) c
 
 LimitPatches::Point LimitPatches::eval_first_order(int face, int sub_face, const Vec2& uv) const {
     return eval_to_order<false>(face, sub_face, uv);
+}
+
+std::optional<std::uint64_t> LimitPatches::kind(int face, int sub_face) const {
+    if (impl_->mesh.tree.levels.size() > (sub_face >= 0 ? 1u : 0u)) return std::nullopt;
+    const FaceTree::Leaf leaf = impl_->mesh.tree.leaf(face, sub_face, Vec2(0));
+    return impl_->with(leaf.face, [](const Patch& patch) { return patch.kind; });
+}
+
+FaceControls LimitPatches::controls(int face, int sub_face) const {
+    const FaceTree::Leaf leaf = impl_->mesh.tree.leaf(face, sub_face, Vec2(0));
+    return impl_->with(leaf.face, [](const Patch& patch) {
+        FaceControls controls{patch.origin, {}};
+        for (std::size_t k = 0; k < static_cast<std::size_t>(patch.surface.GetNumControlPoints()); ++k)
+            controls.offsets.emplace_back(patch.points[3 * k], patch.points[3 * k + 1],
+                                          patch.points[3 * k + 2]);
+        return controls;
+    });
+}
+
+FaceStencils LimitPatches::stencils(int face, int sub_face, const Vec2& uv) const {
+    const FaceTree::Leaf leaf = impl_->mesh.tree.leaf(face, sub_face, uv);
+    return impl_->with(leaf.face, [&](const Patch& patch) {
+        FaceStencils weights;
+        for (std::vector<double>& of_one : weights)
+            of_one.resize(static_cast<std::size_t>(patch.surface.GetNumControlPoints()));
+        patch.surface.EvaluateStencil(&leaf.uv.x, weights[0].data(), weights[1].data(), weights[2].data(),
+                                      weights[3].data(), weights[4].data(), weights[5].data());
+        return weights;
+    });
 }
 
 std::string surface_library_version() {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/raymesh/surface.h"
 #include "surfaces/checked_cage.h"
+#include "surfaces/polynomial/face_stencils.h"
 
 namespace trilens {
 
@@ -40,6 +43,14 @@ class LimitPatches {
     Point eval(int face, int sub_face, const Vec2& uv) const;
     /// The same without second derivatives.
     Point eval_first_order(int face, int sub_face, const Vec2& uv) const;
+
+    /// Faces of one kind are the same sums of their control points; none where the face is several patches, a
+    /// regular one, or of a kind of its own.
+    std::optional<std::uint64_t> kind(int face, int sub_face) const;
+    /// The control points of a face that has a kind, and their weights at (u, v) for position, du, dv, duu,
+    /// duv and dvv.
+    FaceControls controls(int face, int sub_face) const;
+    FaceStencils stencils(int face, int sub_face, const Vec2& uv) const;
 
     /// What is held now, in bytes; see Surface::bytes_held.
     std::size_t bytes() const;

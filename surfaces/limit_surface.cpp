@@ -127,7 +127,7 @@ struct NamedCage {
     bool is_as_given = true;  // no face or corner of it was left out
 };
 
-class LimitSurface final : public Surface, public HasHulls, public HasCageFaces {
+class LimitSurface final : public Surface, public HasHulls, public HasCageFaces, public HasStencils {
   public:
     LimitSurface(const NamedCage& named, const Warn& warn, double memory)
         : LimitSurface(named.cage, named.name, warn, memory) {
@@ -166,6 +166,18 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces 
     std::optional<CageFace> cage_face(Id face) const override {
         if (!is_as_given_) return std::nullopt;
         return CageFace{faces_[face].cage_face, faces_[face].sub_face};
+    }
+
+    /// Not of triangles, whose second derivatives need their sign looked up.
+    std::optional<std::uint64_t> kind(Id face) const override {
+        if (domain_ == FaceDomain::kTriangle) return std::nullopt;
+        return patches_.kind(faces_[face].cage_face, faces_[face].sub_face);
+    }
+    FaceControls controls(Id face) const override {
+        return patches_.controls(faces_[face].cage_face, faces_[face].sub_face);
+    }
+    FaceStencils stencils(Id face, const Vec2& uv) const override {
+        return patches_.stencils(faces_[face].cage_face, faces_[face].sub_face, uv);
     }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {

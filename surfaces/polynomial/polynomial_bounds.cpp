@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/util/parallel.h"
+#include "surfaces/polynomial/face_parts.h"
 #include "surfaces/polynomial/polynomial_parts.h"
 
 namespace trilens {
@@ -23,48 +23,6 @@ using Radii = std::array<double, kQuantities + 1>;
 struct ParameterBox {
     Vec2 low, high;
 };
-
-/// A part of a face, or four that make up one.
-struct Branch {
-    PartShape shape;
-    std::size_t first = 0;  // of four branches, or of one part
-    bool is_part = true;
-};
-
-struct Face {
-    std::vector<Branch> branches;  // the whole face first
-    std::vector<FacePart> parts;
-};
-
-std::array<PartShape, 4> quarters(const PartShape& shape, FaceDomain domain) {
-    const double half = shape.size / 2;
-    const PartShape last = domain == FaceDomain::kSquare ? PartShape{shape.corner + half, half}
-                                                         : PartShape{shape.corner + half, -half};
-    return {{{shape.corner, half},
-             {shape.corner + Vec2(half, 0), half},
-             {shape.corner + Vec2(0, half), half},
-             last}};
-}
-
-Face take_apart(const Surface& surface, Id id) {
-    const FaceDomain domain = surface.domain(id);
-    const double finest = std::ldexp(1, -kFinestPart);
-    Face face;
-    face.branches.push_back({});
-    for (std::size_t b = 0; b < face.branches.size(); ++b) {
-        const PartShape shape = face.branches[b].shape;
-        const std::optional<FacePart> part = polynomial_part(surface, id, shape);
-        const bool split = !part && std::fabs(shape.size) > finest;
-        face.branches[b].is_part = !split;
-        face.branches[b].first = split ? face.branches.size() : face.parts.size();
-        if (split) {
-            for (const PartShape& quarter : quarters(shape, domain)) face.branches.push_back({quarter});
-        } else {
-            face.parts.push_back(part ? *part : sampled_part(surface, id, shape));
-        }
-    }
-    return face;
-}
 
 /// Whether the box and the shape share more than a border; a box without extent along a parameter may lie on
 /// it.
@@ -83,8 +41,9 @@ bool overlap(const PartShape& shape, FaceDomain domain, const ParameterBox& box)
 class PolynomialBounder final : public SurfaceBounder {
   public:
     explicit PolynomialBounder(const Surface& surface) : surface_(surface), faces_(surface.face_count()) {
+        const FaceTaker taker(surface);
         parallel_for(faces_.size(), 1, [&](std::size_t first, std::size_t last) {
-            for (std::size_t f = first; f < last; ++f) faces_[f] = take_apart(surface_, static_cast<Id>(f));
+            for (std::size_t f = first; f < last; ++f) faces_[f] = taker.take(static_cast<Id>(f));
         });
     }
 
@@ -204,7 +163,7 @@ class PolynomialBounder final : public SurfaceBounder {
     }
 
     const Surface& surface_;
-    std::vector<Face> faces_;
+    std::vector<TakenFace> faces_;
 };
 
 }  // namespace

@@ -10,10 +10,6 @@
 
 namespace trilens {
 
-/// How often a face is halved in the search for parts that are one polynomial. What is left then (the last
-/// 2^-10 of a face around an extraordinary vertex) has bounds by samples.
-inline constexpr int kFinestPart = 10;
-
 /// Bounds by convex hulls of Bezier control points (Farin, Curves and Surfaces for CAGD). Each face is taken
 /// apart into dyadic squares (or triangles, where its domain is one) on which it is one polynomial: of degree
 /// 3 in u and in v on squares, of total degree 4 on triangles. That a part is one is found by interpolating

@@ -121,22 +121,40 @@ PerQuantity scales(double size) {
     return {1, size, size, size * size, size * size, size * size};
 }
 
-/// The largest differences of the quantities between the surface and the part's nets, by the surface's
-/// parameters; none as soon as one is more than allowed.
+/// What the surface may be off a part's polynomial.
+PerQuantity allowed_off(const FacePart& part) {
+    double size = 0;
+    for (const Vec3& control : part.net.points()) size = std::max(size, length(control));
+    const double tolerance = kFitTolerance * size + kCoordinateTolerance * largest_coordinate(part.origin);
+    PerQuantity allowed = scales(std::fabs(part.shape.size));
+    for (std::size_t q = 0; q < kQuantities; ++q) allowed[q] = kMoreTolerance[q] * tolerance / allowed[q];
+    return allowed;
+}
+
+/// The differences of the quantities between the surface and the part's nets at t, by the surface's
+/// parameters.
+PerQuantity differences_at(const Surface& surface, Id face, const FacePart& part,
+                           const std::array<BezierNet, kQuantities>& nets, const Vec2& t) {
+    SurfacePoint point = surface.eval(face, at(part.shape, t));
+    point.position -= part.origin;
+    PerQuantity difference = scales(part.shape.size);
+    for (std::size_t q = 0; q < kQuantities; ++q)
+        difference[q] = length(value(nets[q], t) / difference[q] - point.*kQuantity[q]);
+    return difference;
+}
+
+/// The largest of them over the part; none as soon as one is more than allowed, or not a number.
 std::optional<PerQuantity> differences(const Surface& surface, Id face, const FacePart& part,
                                        const PerQuantity& allowed) {
     std::vector<Vec2> points = probes(surface.domain(face));
     add_border_probes(surface.domain(face), part.shape, points);
     const std::array<BezierNet, kQuantities> nets = part_nets(part.net);
-    const PerQuantity scale = scales(part.shape.size);
     PerQuantity largest{};
     for (const Vec2& t : points) {
-        SurfacePoint point = surface.eval(face, at(part.shape, t));
-        point.position -= part.origin;
+        const PerQuantity difference = differences_at(surface, face, part, nets, t);
         for (std::size_t q = 0; q < kQuantities; ++q) {
-            const double difference = length(value(nets[q], t) / scale[q] - point.*kQuantity[q]);
-            if (!(difference <= allowed[q])) return std::nullopt;  // nor for not a number
-            largest[q] = std::max(largest[q], difference);
+            if (!(difference[q] <= allowed[q])) return std::nullopt;
+            largest[q] = std::max(largest[q], difference[q]);
         }
     }
     return largest;
@@ -179,18 +197,25 @@ std::optional<FacePart> polynomial_part(const Surface& surface, Id face, const P
     part.shape = shape;
     part.origin = surface.eval_first_order(face, at(shape, Vec2(0.3))).position;
     part.net = interpolated(surface, face, part);
-
-    double size = 0;
-    for (const Vec3& control : part.net.points()) size = std::max(size, length(control));
-    const double tolerance = kFitTolerance * size + kCoordinateTolerance * largest_coordinate(part.origin);
-    PerQuantity allowed = scales(std::fabs(shape.size));
-    for (std::size_t q = 0; q < kQuantities; ++q) allowed[q] = kMoreTolerance[q] * tolerance / allowed[q];
+    const PerQuantity allowed = allowed_off(part);
     const std::optional<PerQuantity> off = differences(surface, face, part, allowed);
     if (!off) return std::nullopt;
     part.is_polynomial = true;
-    for (std::size_t q = 0; q < kQuantities; ++q)
-        part.slack[q] = kSlackFactor * (*off)[q] + 0.05 * allowed[q];
+    for (std::size_t q = 0; q < kQuantities; ++q) part.slack[q] = kSlackFactor * (*off)[q];
+    add_rounding(part);
     return part;
+}
+
+void add_rounding(FacePart& part) {
+    const PerQuantity allowed = allowed_off(part);
+    for (std::size_t q = 0; q < kQuantities; ++q) part.slack[q] += 0.05 * allowed[q];
+}
+
+bool agrees_at(const Surface& surface, Id face, const FacePart& part, const Vec2& t) {
+    const PerQuantity off = differences_at(surface, face, part, part_nets(part.net), t);
+    for (std::size_t q = 0; q < kQuantities; ++q)
+        if (!(off[q] <= part.slack[q])) return false;
+    return true;
 }
 
 namespace {

@@ -74,6 +74,12 @@ std::array<BezierNet, kQuantities> part_nets(const BezierNet& net);
 /// is not one.
 std::optional<FacePart> polynomial_part(const Surface& surface, Id face, const PartShape& shape);
 
+/// Adds to a polynomial's slack what rounding may take where the surface is evaluated.
+void add_rounding(FacePart& part);
+
+/// Whether the surface is within the slack of a polynomial part at t, in the part's own parameters.
+bool agrees_at(const Surface& surface, Id face, const FacePart& part, const Vec2& t);
+
 /// The part as samples.
 FacePart sampled_part(const Surface& surface, Id face, const PartShape& shape);
 
