@@ -192,9 +192,7 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
         return with_normal(face, inside, eval_patch(face, inside));
     }
 
-    std::unique_ptr<const SurfaceBounder> make_bounder() const override {
-        return make_polynomial_bounder(*this);
-    }
+    std::unique_ptr<const SurfaceBounder> make_bounder() const override { return bounder_.get(*this); }
 
   private:
     /// Without second derivatives.
@@ -233,6 +231,7 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     FaceDomain domain_;
     bool is_as_given_ = true;
     LimitPatches patches_;
+    SharedPolynomialBounder bounder_;
     std::vector<Box> hulls_;  // per face of the cage
     std::vector<SurfaceFace> faces_;
 };

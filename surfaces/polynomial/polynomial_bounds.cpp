@@ -172,6 +172,32 @@ std::unique_ptr<const SurfaceBounder> make_polynomial_bounder(const Surface& sur
     return std::make_unique<PolynomialBounder>(surface);
 }
 
+namespace {
+
+class BounderShare final : public SurfaceBounder {
+  public:
+    explicit BounderShare(std::shared_ptr<const SurfaceBounder> of) : of_(std::move(of)) {}
+
+    SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const override {
+        return of_->bounds(face, low, high);
+    }
+    Box box(Id face, const Vec2& low, const Vec2& high) const override { return of_->box(face, low, high); }
+
+  private:
+    std::shared_ptr<const SurfaceBounder> of_;
+};
+
+}  // namespace
+
+std::unique_ptr<const SurfaceBounder> SharedPolynomialBounder::get(const Surface& surface) const {
+    const std::lock_guard lock(making_);
+    std::shared_ptr<const SurfaceBounder> bounder = made_.lock();
+    // Isolated: else this thread might meanwhile take up work that waits for the lock.
+    if (!bounder) run_isolated([&] { bounder = make_polynomial_bounder(surface); });
+    made_ = bounder;
+    return std::make_unique<BounderShare>(std::move(bounder));
+}
+
 // The cross product's part along a normal from below, its part across from above.
 
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <span>
 
 #include "base/math/vec.h"
@@ -15,6 +16,16 @@ namespace trilens {
 /// 3 in u and in v on squares, of total degree 4 on triangles. That a part is one is found by interpolating
 /// and comparing with the surface at other points; the difference, which is rounding, widens the bounds.
 std::unique_ptr<const SurfaceBounder> make_polynomial_bounder(const Surface& surface);
+
+/// The same of one surface, made once for all who hold it at a time: it is large. Thread-safe.
+class SharedPolynomialBounder {
+  public:
+    std::unique_ptr<const SurfaceBounder> get(const Surface& surface) const;
+
+  private:
+    mutable std::mutex making_;
+    mutable std::weak_ptr<const SurfaceBounder> made_;
+};
 
 // How far normals turn where du and dv stay within their bounds.
 

@@ -73,9 +73,9 @@ void PointProjector::add_optic(std::size_t index) {
     may_have_several_ = may_have_several();
     const bool asks_one = !request_.path.asks() || request_.path.size() == 1;
     if (searches_surfaces()) {
-        limit_tracer(world_, index);
         searcher_.push_back(asks_one ? std::make_unique<SpecularSearcher>(*world_.optics[index].surface)
                                      : nullptr);
+        limit_tracer(world_, index);  // by the bounds that the searcher holds
         facets_at_.emplace_back(facets.grid(), world_.optics[index].surface->face_count());
     }
     for (const PathMesh& path : frame_.optics[index].paths) {
