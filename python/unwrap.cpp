@@ -313,10 +313,6 @@ void bind_map(RendererClass& renderer) {
         "InputError where the film shows nothing, OutputError.");
 }
 
-std::shared_ptr<const Texture> picture_of(const Photo& given) {
-    return photo_from(given).picture;
-}
-
 void bind_anamorph(py::module_& module) {
     module.def(
         "anamorph",
@@ -325,7 +321,7 @@ void bind_anamorph(py::module_& module) {
            const std::optional<std::array<double, 4>>& window, const Name& optic, const Name& camera,
            bool verify, const std::optional<PhotoFile>& file, const py::object& progress) {
             AnamorphRequest request;
-            request.picture = picture_of(picture);
+            request.picture = photo_from(picture).picture;
             request.page = find_mesh(renderer.scene(), page);
             request.optic = optic_index(renderer, optic);
             request.window = window;
