@@ -51,7 +51,7 @@ Answer run_mesh(const MapOptions& options, const FilmMapRequest& request, const 
     const double seconds = watch.seconds();
     write_mesh(options.output, mesh);
     if (!mesh.error)
-        console.warn("no cell of the mesh is drawn at all its nodes: its error is unmeasured");
+        console.warn("no cell of the mesh is drawn whole, or none can be measured: its error is unmeasured");
     else if (params.columns == 0 && mesh.error->p99 > params.max_error)
         console.warn(
             fmt::format("the finest mesh is off by {:.3g} pixels between its nodes (p99)", mesh.error->p99));

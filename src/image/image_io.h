@@ -68,7 +68,7 @@ bool is_exr_file(const std::string& file);
 /// window that is not the display window the display window, black where there is no data. Throws InputError.
 std::shared_ptr<const Texture> read_texture(const std::string& file);
 
-/// The same for a PNG, JPEG, OpenEXR or Radiance file held in memory. `name`: for messages.
+/// The same for a PNG, JPEG, WebP, OpenEXR or Radiance file held in memory. `name`: for messages.
 std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded,
                                               const std::string& name);
 

@@ -21,6 +21,7 @@
 #include "image/image_io.h"
 #include "image/tone.h"
 #include "pictures/letters.h"
+#include "pictures/webp.h"
 
 namespace trilens {
 namespace {
@@ -28,6 +29,9 @@ namespace {
 /// No usual codec shrinks a picture that much; a header that claims more is damaged or hostile.
 constexpr double kLargestCompression = 4096;
 constexpr double kSmallHeader = 65536;
+/// But WebP, which shrinks a picture of one colour to some hundred bytes: of that, so many pixels are
+/// believed.
+constexpr double kBelievedPixels = 8192.0 * 8192.0;
 
 /// 8 and 16 bit values as fractions of one are all multiples of 1/65535, so one table serves both.
 float linear_from_stored(float fraction) {
@@ -99,27 +103,12 @@ OIIO::ImageSpec checked_header(const OIIO::ImageInput& in, const std::string& na
                                std::size_t encoded_size) {
     OIIO::ImageSpec spec = in.spec();
     if (spec.deep || spec.depth > 1) throw InputError(name, "", "is no flat picture");
-    if (static_cast<double>(spec.image_bytes(true)) >
-        kSmallHeader + kLargestCompression * static_cast<double>(encoded_size))
+    const bool is_believed = in.format_name() == std::string_view("webp") &&
+                             static_cast<double>(spec.image_pixels()) <= kBelievedPixels;
+    if (!is_believed && static_cast<double>(spec.image_bytes(true)) >
+                            kSmallHeader + kLargestCompression * static_cast<double>(encoded_size))
         throw InputError(name, "", "is damaged: its header claims more pixels than the file can hold");
     return spec;
-}
-
-/// Whether colours come multiplied by alpha although a file of this kind does not have them so:
-/// OpenImageIO 2.4 does that to WebP whatever the hints say.
-bool is_multiplied_by_reader(const OIIO::ImageInput& in, const OIIO::ImageSpec& spec) {
-    return in.format_name() == std::string_view("webp") && spec.alpha_channel >= 0 &&
-           spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-}
-
-/// Undoes it; where nothing shows, no colour is left.
-void divide_by_alpha(const OIIO::ImageSpec& spec, std::vector<float>& values) {
-    const auto channels = static_cast<std::size_t>(spec.nchannels),
-               alpha = static_cast<std::size_t>(spec.alpha_channel);
-    for (std::size_t first = 0; first < values.size(); first += channels)
-        for (std::size_t c = 0; c < channels; ++c)
-            if (c != alpha && values[first + alpha] > 0)
-                values[first + c] = std::min(1.0f, values[first + c] / values[first + alpha]);
 }
 
 /// Reads the first picture of an open file.
@@ -131,7 +120,6 @@ std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string
                                   static_cast<std::size_t>(spec.nchannels));
         if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, values.data()) || in.has_error())
             throw InputError(name, "", "is truncated or damaged: " + library_reason(in.geterror()));
-        if (is_multiplied_by_reader(in, spec)) divide_by_alpha(spec, values);
         for (const float value : values)
             if (!std::isfinite(value)) throw InputError(name, "", "holds a value that is not finite");
         return texture_of(spec, values);
@@ -153,7 +141,7 @@ std::string name_for_format(std::span<const unsigned char> encoded) {
     const std::string_view start(reinterpret_cast<const char*>(encoded.data()),
                                  std::min<std::size_t>(encoded.size(), 16));
     const auto starts_with = [&](std::string_view magic) { return start.substr(0, magic.size()) == magic; };
-    if (starts_with("RIFF") && start.size() >= 12 && start.substr(8, 4) == "WEBP") return "memory.webp";
+    if (is_webp(encoded)) return "memory.webp";
     if (starts_with("\x89PNG\r\n\x1a\n")) return "memory.png";
     if (starts_with("\xff\xd8\xff")) return "memory.jpg";
     if (starts_with("\x76\x2f\x31\x01")) return "memory.exr";
@@ -184,11 +172,6 @@ std::unique_ptr<OIIO::ImageInput> open_file(const std::string& file) {
     auto in = OIIO::ImageInput::open(file, &hints);
     if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
     return in;
-}
-
-std::shared_ptr<const Texture> read(const std::string& file) {
-    const std::size_t size = readable_size(file);
-    return read_open(*open_file(file), file, size);
 }
 
 /// The first channel, converted by the library to `Stored`, of which `type` is its name.
@@ -305,10 +288,8 @@ HeightGrid heights_of(const std::string& file) {
     return heights;
 }
 
-std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, const std::string& name) {
-    refuse_card_textures({reinterpret_cast<const char*>(encoded.data()), encoded.size()}, name);
-    const std::string format = name_for_format(encoded);
-    if (format.empty()) throw InputError(name, "", "is neither PNG, JPEG, WebP, OpenEXR nor Radiance");
+std::shared_ptr<const Texture> read_encoded(std::span<const unsigned char> encoded, const std::string& format,
+                                            const std::string& name) {
     OIIO::Filesystem::IOMemReader memory(encoded.data(), encoded.size());
     OIIO::Filesystem::IOProxy* proxy = &memory;
     // The proxy goes in as a hint: open() of OpenImageIO 2.4 forgets a proxy argument where there are hints.
@@ -317,6 +298,28 @@ std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, co
     const auto in = OIIO::ImageInput::open(format, &hints);
     if (!in) throw InputError(name, "", "is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, name, encoded.size());
+}
+
+std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, const std::string& name) {
+    refuse_card_textures({reinterpret_cast<const char*>(encoded.data()), encoded.size()}, name);
+    const std::string format = name_for_format(encoded);
+    if (format.empty()) throw InputError(name, "", "is neither PNG, JPEG, WebP, OpenEXR nor Radiance");
+    const std::shared_ptr<const Texture> texture = read_encoded(encoded, format, name);
+    if (texture->alpha.empty() || !is_webp(encoded)) return texture;
+    auto colours = std::make_shared<Texture>(*read_encoded(webp_without_alpha(encoded), format, name));
+    colours->alpha = texture->alpha;
+    return colours;
+}
+
+std::shared_ptr<const Texture> read(const std::string& file) {
+    const std::size_t size = readable_size(file);
+    const auto in = open_file(file);
+    if (in->format_name() != std::string_view("webp")) return read_open(*in, file, size);
+    std::vector<unsigned char> bytes(size);
+    if (!std::ifstream(file, std::ios::binary)
+             .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
+        throw InputError(file, "", "cannot be read");
+    return decode(bytes, file);
 }
 
 void set_threads(int threads) {

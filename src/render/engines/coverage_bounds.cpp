@@ -127,11 +127,21 @@ struct CoverageBounder::Wanted {
     const SampleGrid& grid;
     std::span<const Id> shown;
     std::span<CoverageBounds> bounds;
-    std::span<const Id> facets;  // of their rows
+    std::span<const Id> facets;  // of the block
 
     std::size_t index(double x, double y) const {
         return static_cast<std::size_t>(y - grid.y0) * static_cast<std::size_t>(grid.width()) +
                static_cast<std::size_t>(x - grid.x0);
+    }
+    /// All of a block's pixels see one surface.
+    void fill(const Vec2& at, double size, Id surface) const {
+        for (double y = std::max<double>(at.y, grid.y0); y < std::min<double>(at.y + size, grid.y1); ++y)
+            for (double x = std::max<double>(at.x, grid.x0); x < std::min<double>(at.x + size, grid.x1);
+                 ++x) {
+                const std::size_t i = index(x, y);
+                const float share = shown[i] == surface ? 1.0f : 0.0f;
+                bounds[i] = {share, share};
+            }
     }
 };
 
@@ -272,9 +282,7 @@ CoverageBounds CoverageBounder::bound_pixel(const Vec2& at, Id shown, std::span<
     }
     for (const Id f : facets) {
         const CameraFacet& facet = facets_[f];
-        if (frame_.camera.linear || (facet.low.x <= at.x + 1 && facet.high.x >= at.x &&
-                                     facet.low.y <= at.y + 1 && facet.high.y >= at.y))
-            pixel.add_facet(facet);
+        if (frame_.camera.linear || facet.touches(at, at + Vec2(1))) pixel.add_facet(facet);
     }
     return pixel.bounds();
 }
@@ -332,42 +340,41 @@ void CoverageBounder::bound_block(const Vec2& at, double size, const BlockSight*
     }
 
     BlockSight kept;
+    const BlockSight* within = nullptr;
     if (around) {
         const SquareRays rays(around->facet->rays, at, at + Vec2(size));
-        const SquareSight sight = see_first(rays, reach_, around->triangles, kept.triangles);
-        kept.facet = around->facet;
-        if (sight.is_sure) {
-            for (double y = std::max<double>(at.y, grid.y0); y < std::min<double>(at.y + size, grid.y1); ++y)
-                for (double x = std::max<double>(at.x, grid.x0); x < std::min<double>(at.x + size, grid.x1);
-                     ++x) {
-                    const std::size_t i = wanted.index(x, y);
-                    const float share = wanted.shown[i] == sight.surface ? 1.0f : 0.0f;
-                    wanted.bounds[i] = {share, share};
-                }
-            return;
+        if (rays.has_rays()) {
+            const SquareSight sight = see_first(rays, reach_, around->triangles, kept.triangles);
+            if (sight.is_sure) {
+                wanted.fill(at, size, sight.surface);
+                return;
+            }
+            kept.facet = around->facet;
+            within = &kept;
         }
     }
     const double half = size / 2;
     for (int quarter = 0; quarter < 4; ++quarter)
-        bound_block(at + half * Vec2(quarter & 1, quarter >> 1), half, around ? &kept : nullptr, wanted);
+        bound_block(at + half * Vec2(quarter & 1, quarter >> 1), half, within, wanted);
 }
 
 void CoverageBounder::bound(const SampleGrid& grid, std::span<const Id> shown,
                             std::span<CoverageBounds> bounds) const {
     const auto first_block = [](int from) { return std::floor(from / kBlock) * kBlock; };
-    const double top = first_block(grid.y0);
-    const std::size_t rows = static_cast<std::size_t>(std::ceil((grid.y1 - top) / kBlock));
-    parallel_for(rows, 1, [&](std::size_t first, std::size_t last) {
+    const auto blocks = [&](int from, int to) {
+        return static_cast<std::size_t>(std::ceil((to - first_block(from)) / kBlock));
+    };
+    const std::size_t columns = blocks(grid.x0, grid.x1), rows = blocks(grid.y0, grid.y1);
+    parallel_for(columns * rows, 4, [&](std::size_t first, std::size_t last) {
         std::vector<Id> facets;
-        for (std::size_t row = first; row < last; ++row) {
-            const double y = top + kBlock * static_cast<double>(row);
+        for (std::size_t block = first; block < last; ++block) {
+            const Vec2 at(first_block(grid.x0) + kBlock * static_cast<double>(block % columns),
+                          first_block(grid.y0) + kBlock * static_cast<double>(block / columns));
             facets.clear();
             for (std::size_t f = 0; f < facets_.size(); ++f)
-                if (frame_.camera.linear || (facets_[f].low.y <= y + kBlock && facets_[f].high.y >= y))
+                if (frame_.camera.linear || facets_[f].touches(at, at + Vec2(kBlock)))
                     facets.push_back(static_cast<Id>(f));
-            const Wanted wanted{grid, shown, bounds, facets};
-            for (double x = first_block(grid.x0); x < grid.x1; x += kBlock)
-                bound_block({x, y}, kBlock, nullptr, wanted);
+            bound_block(at, kBlock, nullptr, {grid, shown, bounds, facets});
         }
     });
 }

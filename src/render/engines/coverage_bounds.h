@@ -40,6 +40,10 @@ class CoverageBounder {
         std::array<Vec3, 3> corner{};  // on the homogeneous screen
         bool turned = false;           // clockwise there
         Vec2 low{0}, high{0};          // of the pixels that it may touch
+
+        bool touches(const Vec2& from, const Vec2& to) const {
+            return low.x <= to.x && high.x >= from.x && low.y <= to.y && high.y >= from.y;
+        }
     };
     class Pixel;
     struct BlockSight;

@@ -210,8 +210,7 @@ class MaterialReader {
         return written;
     }
 
-    /// The index of a texture's picture: that of EXT_texture_webp where it has one, for which its own stands
-    /// in where WebP is not read; negative: none.
+    /// The index of a texture's picture: that of EXT_texture_webp where it has one; negative: none.
     int picture_of(const tinygltf::Texture& texture, const std::string& place) {
         const auto webp = texture.extensions.find("EXT_texture_webp");
         if (webp == texture.extensions.end())
@@ -219,8 +218,10 @@ class MaterialReader {
         const std::string webp_place = place + "/extensions/EXT_texture_webp";
         if (!webp->second.IsObject() || !webp->second.Get("source").IsInt())
             source_.fail(webp_place, "has no source");
-        return source_.checked(webp->second.Get("source").GetNumberAsInt(), into_.images.size(), webp_place,
-                               "image");
+        const int index = source_.checked(webp->second.Get("source").GetNumberAsInt(), into_.images.size(),
+                                          webp_place, "image");
+        if (index < 0) source_.fail(webp_place, "its source is negative");
+        return index;
     }
 
     void read_sampler(int index, TextureSampler& sampler, Json& written) {

@@ -18,6 +18,8 @@
 namespace trilens {
 namespace {
 
+const std::string kWebpUri = "data:image/webp;base64,", kBytesUri = "data:application/octet-stream;base64,";
+
 class Reader {
   public:
     explicit Reader(GltfSource& source) : source_(source), in_(source.model) {}
@@ -61,6 +63,12 @@ class Reader {
             const std::string place = "/images/" + std::to_string(i);
             result.name = source_.file + ": " + place;
             result.encoded = image.bufferView >= 0 ? view_bytes(image.bufferView, place) : image.image;
+            if (image.uri.rfind(kWebpUri, 0) == 0) {
+                // A kind of data that the library does not know by its name.
+                std::string kind;
+                tinygltf::DecodeDataURI(&result.encoded, kind, kBytesUri + image.uri.substr(kWebpUri.size()),
+                                        0, false);
+            }
             result.file = source_.resolve(image.uri);
             if (!result.file.empty()) result.uri = decode_gltf_uri(image.uri);
             out_.images.push_back(std::move(result));

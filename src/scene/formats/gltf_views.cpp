@@ -1,4 +1,4 @@
-// Cameras of a glTF, and KHR_lights_punctual; its extras as JSON, and which extensions are known.
+// Cameras of a glTF, and KHR_lights_punctual; its extras as JSON.
 #include <cmath>
 
 #include <tiny_gltf.h>
@@ -89,25 +89,6 @@ double gltf_number(const GltfSource& source, const Json& number, double low, dou
     if (!(value >= low && value <= high))
         source.fail(place, describe(number) + " is no number in " + describe(low) + ".." + describe(high));
     return value;
-}
-
-void check_gltf_extensions(GltfSource& source) {
-    static const std::set<std::string> known = {"KHR_materials_unlit",
-                                                "KHR_mesh_quantization",
-                                                "KHR_texture_transform",
-                                                "KHR_lights_punctual",
-                                                "KHR_materials_ior",
-                                                "KHR_materials_transmission",
-                                                "KHR_materials_volume",
-                                                "KHR_materials_specular",
-                                                "KHR_materials_dispersion",
-                                                "EXT_texture_webp",
-                                                "KHR_materials_emissive_strength"};
-    for (const std::string& name : source.model.extensionsRequired)
-        if (known.count(name) == 0)
-            source.fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
-    for (const std::string& name : source.model.extensionsUsed)
-        if (known.count(name) == 0) source.warn("the extension '" + name + "' is ignored");
 }
 
 void read_gltf_views(GltfSource& source, GltfModel& into) {
