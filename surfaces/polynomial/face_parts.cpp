@@ -26,10 +26,10 @@ std::array<PartShape, 4> quarters(const PartShape& shape, FaceDomain domain) {
 }
 
 /// Halves a face until `keep` takes each part, and takes the last ones whatever they are.
-std::vector<Branch> branches_of(FaceDomain domain,
-                                const std::function<bool(const PartShape&, bool is_last)>& keep) {
+std::vector<PartBranch> branches_of(FaceDomain domain,
+                                    const std::function<bool(const PartShape&, bool is_last)>& keep) {
     const double finest = std::ldexp(1, -kFinestPart);
-    std::vector<Branch> branches(1);
+    std::vector<PartBranch> branches(1);
     std::size_t parts = 0;
     for (std::size_t b = 0; b < branches.size(); ++b) {
         const PartShape shape = branches[b].shape;
@@ -166,6 +166,7 @@ std::optional<TakenFace> FaceTaker::take_by(const Kind& kind, Id face) const {
     const FaceControls controls = stencils_->controls(face);
     const std::vector<Group> groups = groups_of(controls.offsets);
     TakenFace taken;
+    taken.by_kind = true;
     taken.branches = kind.branches;
     taken.parts.reserve(kind.parts.size());
     for (const KindPart& known : kind.parts) {

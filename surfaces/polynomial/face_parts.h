@@ -17,15 +17,16 @@ namespace trilens {
 inline constexpr int kFinestPart = 10;
 
 /// A part of a face, or four that make up one.
-struct Branch {
+struct PartBranch {
     PartShape shape;
     std::size_t first = 0;  // of four branches, or of one part
     bool is_part = true;
 };
 
 struct TakenFace {
-    std::vector<Branch> branches;  // the whole face first
+    std::vector<PartBranch> branches;  // the whole face first
     std::vector<FacePart> parts;
+    bool by_kind = false;  // with others of its kind, not alone
 };
 
 TakenFace take_apart(const Surface& surface, Id face);
@@ -47,7 +48,7 @@ class FaceTaker {
         std::vector<FacePart> of_group;  // empty: no polynomial
     };
     struct Kind {
-        std::vector<Branch> branches;
+        std::vector<PartBranch> branches;
         std::vector<KindPart> parts;
     };
 

@@ -101,7 +101,7 @@ class PolynomialBounder final : public SurfaceBounder {
   private:
     void collect(Id face, std::size_t index, const ParameterBox& box,
                  std::vector<const FacePart*>& parts) const {
-        const Branch& branch = faces_[face].branches[index];
+        const PartBranch& branch = faces_[face].branches[index];
         if (!overlap(branch.shape, surface_.domain(face), box)) return;
         if (branch.is_part) {
             parts.push_back(&faces_[face].parts[branch.first]);

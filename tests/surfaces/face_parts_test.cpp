@@ -41,13 +41,13 @@ Cage rough_sheet(int n, bool has_crease) {
 }
 
 struct Apart {
-    int by_kind = 0, other_branches = 0;
+    int by_kind = 0, alone = 0, other_branches = 0;
     double worst = 0;       // between the two ways' positions
     double most_slack = 0;  // of the positions, of the parts' sizes
 };
 
 void compare(const TakenFace& one, const TakenFace& other, Apart& apart) {
-    const auto same_branch = [](const Branch& a, const Branch& b) {
+    const auto same_branch = [](const PartBranch& a, const PartBranch& b) {
         return a.shape.corner == b.shape.corner && a.shape.size == b.shape.size && a.is_part == b.is_part;
     };
     if (!std::ranges::equal(one.branches, other.branches, same_branch)) {
@@ -75,11 +75,13 @@ TEST_CASE("faces taken apart by their kind are those taken apart alone, to round
         Apart apart;
         for (Id face = 0; face < surface->face_count(); ++face) {
             if (!taker.is_of_kind(face)) continue;
-            ++apart.by_kind;
-            compare(taker.take(face), take_apart(*surface, face), apart);
+            const TakenFace taken = taker.take(face);
+            ++(taken.by_kind ? apart.by_kind : apart.alone);
+            compare(taken, take_apart(*surface, face), apart);
         }
         CAPTURE(has_crease, apart.by_kind, apart.worst, apart.most_slack);
         CHECK(apart.by_kind > 15);
+        CHECK(apart.alone == 0);
         CHECK(apart.other_branches == 0);
         CHECK(apart.worst < 1e-12);
         CHECK(apart.worst > 0);
