@@ -98,13 +98,17 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
     return texture;
 }
 
+bool is_read_as_webp(const OIIO::ImageInput& in) {
+    return in.format_name() == std::string_view("webp");
+}
+
 /// What the header of an open file says of its first picture.
 OIIO::ImageSpec checked_header(const OIIO::ImageInput& in, const std::string& name,
                                std::size_t encoded_size) {
     OIIO::ImageSpec spec = in.spec();
     if (spec.deep || spec.depth > 1) throw InputError(name, "", "is no flat picture");
-    const bool is_believed = in.format_name() == std::string_view("webp") &&
-                             static_cast<double>(spec.image_pixels()) <= kBelievedPixels;
+    const bool is_believed =
+        is_read_as_webp(in) && static_cast<double>(spec.image_pixels()) <= kBelievedPixels;
     if (!is_believed && static_cast<double>(spec.image_bytes(true)) >
                             kSmallHeader + kLargestCompression * static_cast<double>(encoded_size))
         throw InputError(name, "", "is damaged: its header claims more pixels than the file can hold");
@@ -314,12 +318,10 @@ std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, co
 std::shared_ptr<const Texture> read(const std::string& file) {
     const std::size_t size = readable_size(file);
     const auto in = open_file(file);
-    if (in->format_name() != std::string_view("webp")) return read_open(*in, file, size);
-    std::vector<unsigned char> bytes(size);
-    if (!std::ifstream(file, std::ios::binary)
-             .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-        throw InputError(file, "", "cannot be read");
-    return decode(bytes, file);
+    if (!is_read_as_webp(*in)) return read_open(*in, file, size);
+    const std::optional<std::string> bytes = read_whole_file(file);
+    if (!bytes) throw InputError(file, "", "cannot be read");
+    return decode({reinterpret_cast<const unsigned char*>(bytes->data()), bytes->size()}, file);
 }
 
 void set_threads(int threads) {

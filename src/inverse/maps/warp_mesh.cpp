@@ -22,7 +22,7 @@ constexpr std::size_t kMostMeasured = 50'000;
 /// Of a fisheye's mesh, so that its cells are about square a third of the way out.
 constexpr double kRingsPerRay = 0.5;
 /// So many times the columns in a step, at most.
-constexpr double kFinest = 4;
+constexpr double kLargestStep = 4;
 
 /// What makes nodes: places where a mesh is regular in, their places on the other side out, on the target or
 /// on the film.
@@ -283,8 +283,8 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
         }
         // The error falls with the square of the cells' size; near the rim more slowly.
         const double finer =
-            mesh.error ? std::clamp(1.1 * std::sqrt(mesh.error->p99 / params.max_error), 1.2, kFinest)
-                       : kFinest;
+            mesh.error ? std::clamp(1.1 * std::sqrt(mesh.error->p99 / params.max_error), 1.2, kLargestStep)
+                       : kLargestStep;
         columns = std::min(kMostWarpColumns, static_cast<int>(finer * (columns - 1)) + 1);
         progress(double(columns) / kMostWarpColumns);
     }

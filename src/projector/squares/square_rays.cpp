@@ -96,28 +96,27 @@ bool SquareRays::may_meet(const Vec3& low, const Vec3& high) const {
     return true;
 }
 
-bool SquareRays::is_outside(const std::array<Vec3, 3>& corner, double far) const {
-    for (std::size_t s = 0; s < side_count_; ++s) {
-        const Side& side = sides_[s];
-        const double most =
-            std::max({dot(side.normal, corner[0]), dot(side.normal, corner[1]), dot(side.normal, corner[2])});
-        if (most < side.offset - kSignSlack * (std::fabs(side.offset) + side.size * (far + length(shift_))))
-            return true;
-    }
-    return false;
+bool SquareRays::is_outside(const std::array<Vec3, 3>& corner, double size) const {
+    return std::any_of(
+        sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(side_count_), [&](const Side& side) {
+            const double most = std::max(
+                {dot(side.normal, corner[0]), dot(side.normal, corner[1]), dot(side.normal, corner[2])});
+            return most < side.offset - kSignSlack * (std::fabs(side.offset) + side.size * size);
+        });
 }
 
 SquareMeeting::SquareMeeting(const SquareRays& rays, const std::array<Vec3, 3>& from_centre, double reach) {
     std::array<Vec3, 3> corner;
     std::array<double, 3> far;
+    const double shift = length(rays.shift_);
     for (std::size_t k = 0; k < 3; ++k) {
         corner[k] = from_centre[k] - rays.shift_;
-        far[k] = length(corner[k]) + kSignSlack * length(rays.shift_);
+        far[k] = length(corner[k]) + kSignSlack * shift;
     }
 
     // Without area: never seen.
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) return;
-    if (rays.is_outside(corner, std::max({far[0], far[1], far[2]}))) return;
+    if (rays.is_outside(corner, std::max({far[0], far[1], far[2]}) + shift)) return;
 
     // Where along the rays: between the corners', and as the plane has it.
     Spread t;

@@ -39,9 +39,9 @@ class SquareRays {
     };
 
     void add_side(const Vec3& normal);
-    /// Whether a triangle, from `shift_`, lies beyond one of the beam's sides. `far`: how far its corners
-    /// lie, at most.
-    bool is_outside(const std::array<Vec3, 3>& corner, double far) const;
+    /// Whether a triangle, from `shift_`, lies beyond one of the beam's sides. `size`: of what its corners
+    /// are made.
+    bool is_outside(const std::array<Vec3, 3>& corner, double size) const;
 
     Vec3 shift_{0};  // from the facet's centre to where the middle ray starts; what follows counts from there
     // Of the rays at the corners, in a ring: times their weights.

@@ -116,6 +116,28 @@ CoverageBounder::CoverageBounder(const World& world, const Frame& frame,
     }
 }
 
+/// Where a square's rays are asked for what they may meet.
+struct CoverageBounder::Place {
+    const Vec3& centre;         // the facet's
+    Vec2 pixel{0};              // whose optics are meant
+    bool mixes_optics = false;  // as one
+};
+
+std::vector<SquareTriangle> CoverageBounder::triangles_before(const SquareRays& rays,
+                                                              const Place& place) const {
+    std::vector<SquareTriangle> triangles;
+    collect_triangles(
+        prepared_objects(world_), place.centre, rays,
+        [&](Id triangle) { return world_.objects.object[triangle]; }, triangles);
+    for (std::size_t i = 0; i < windows_.size(); ++i) {
+        if (!holds_pixel(windows_[i], place.pixel)) continue;
+        const Id mesh = place.mixes_optics ? kSomeOptic : world_.optics[i].mesh;
+        collect_triangles(
+            frame_.optics[i].facets->prepared(), place.centre, rays, [&](Id) { return mesh; }, triangles);
+    }
+    return triangles;
+}
+
 /// What rays of a block of pixels may see, all of one facet.
 struct CoverageBounder::BlockSight {
     const CameraFacet* facet = nullptr;
@@ -199,19 +221,8 @@ void CoverageBounder::Pixel::add_facet(const CameraFacet& facet) {
         return;
     Part part{&facet, std::vector<Triangles>(kLevels + 2)};
     const SquareRays rays(facet.rays, at_, high);
-    if (rays.has_rays()) {
-        const World& world = of_.world_;
-        collect_triangles(
-            prepared_objects(world), facet.rays.centre, rays,
-            [&](Id triangle) { return world.objects.object[triangle]; }, part.triangles[0]);
-        for (std::size_t i = 0; i < of_.windows_.size(); ++i) {
-            if (!holds_pixel(of_.windows_[i], at_)) continue;
-            const Id mesh = mixes_optics_ ? kSomeOptic : world.optics[i].mesh;
-            collect_triangles(
-                of_.frame_.optics[i].facets->prepared(), facet.rays.centre, rays, [&](Id) { return mesh; },
-                part.triangles[0]);
-        }
-    }
+    if (rays.has_rays())
+        part.triangles[0] = of_.triangles_before(rays, {facet.rays.centre, at_, mixes_optics_});
     parts_.push_back(std::move(part));
 }
 
@@ -304,24 +315,17 @@ const CoverageBounder::CameraFacet* CoverageBounder::facet_around(const Vec2& lo
 /// or in none's.
 std::optional<CoverageBounder::BlockSight> CoverageBounder::meet_block(const Vec2& at, double size,
                                                                        std::span<const Id> facets) const {
-    std::optional<std::size_t> optic;
-    for (std::size_t i = 0; i < windows_.size(); ++i) {
-        if (!touches_block(windows_[i], at, size)) continue;
-        if (optic || !holds_block(windows_[i], at, size)) return std::nullopt;
-        optic = i;
+    bool is_in_one = false;
+    for (const SampleGrid& window : windows_) {
+        if (!touches_block(window, at, size)) continue;
+        if (is_in_one || !holds_block(window, at, size)) return std::nullopt;
+        is_in_one = true;
     }
     BlockSight met{facet_around(at, at + Vec2(size), facets), {}};
     if (!met.facet) return std::nullopt;
     const SquareRays rays(met.facet->rays, at, at + Vec2(size));
     if (!rays.has_rays()) return std::nullopt;
-    const Vec3& centre = met.facet->rays.centre;
-    collect_triangles(
-        prepared_objects(world_), centre, rays, [&](Id triangle) { return world_.objects.object[triangle]; },
-        met.triangles);
-    if (optic)
-        collect_triangles(
-            frame_.optics[*optic].facets->prepared(), centre, rays,
-            [&](Id) { return world_.optics[*optic].mesh; }, met.triangles);
+    met.triangles = triangles_before(rays, {met.facet->rays.centre, at, false});
     return met;
 }
 

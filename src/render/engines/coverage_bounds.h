@@ -47,8 +47,10 @@ class CoverageBounder {
     };
     class Pixel;
     struct BlockSight;
+    struct Place;
     struct Wanted;
 
+    std::vector<SquareTriangle> triangles_before(const SquareRays& rays, const Place& place) const;
     const CameraFacet* facet_around(const Vec2& low, const Vec2& high, std::span<const Id> facets) const;
     std::optional<BlockSight> meet_block(const Vec2& at, double size, std::span<const Id> facets) const;
     void bound_block(const Vec2& at, double size, const BlockSight* around, const Wanted& wanted) const;
