@@ -57,6 +57,21 @@ class FrameSequence {
             turn > 0 ? turntable(scene, request_.frame.camera, frame, turn) : std::vector<SceneOverride>());
     }
 
+    Picture write_frame(const std::string& output, const std::string& job) {
+        const Progress progress = console_.progress(job);
+        if (format_ == "exr") {
+            Picture picture = renderer_->write_exr(output, request_, progress, once());
+            name_output(output, console_);
+            return picture;
+        }
+        EncodedPicture encoded = renderer_->draw_png(request_, options_.written_tones(), progress, once());
+        if (is_apng())
+            pngs_.push_back(std::move(encoded.bytes));
+        else
+            write_output(output, encoded.bytes, console_);
+        return std::move(encoded.picture);
+    }
+
     Json draw_frame(const Scene& scene, int frame, const std::string& output) {
         const Stopwatch watch;
         SceneReuse kept;
@@ -66,15 +81,7 @@ class FrameSequence {
             renderer_.emplace(scene_of(scene, frame), once());
         const double scene_seconds = watch.seconds();
         const std::string job = fmt::format("frame {}", frame);
-        const bool is_exr = format_ == "exr";
-        const Picture picture = is_exr
-                                    ? renderer_->write_exr(output, request_, console_.progress(job), once())
-                                    : renderer_->draw(request_, console_.progress(job), once());
-        if (is_exr) name_output(output, console_);
-        if (is_apng())
-            pngs_.push_back(encode_image_as(picture.image, ImageFormat::kPng, options_.written_tones()));
-        else if (!is_exr)
-            write_output(output, picture.image, {ImageFormat::kPng, options_.written_tones()}, console_);
+        const Picture picture = write_frame(output, job);
         console_.note(
             fmt::format("{}: scene {:.3f} s ({} and {} optics kept), prepared in {:.3f} s, drawn in {:.3f} s",
                         job, scene_seconds, kept.objects ? "objects" : "no objects", kept.optics,
@@ -127,9 +134,9 @@ Answer run_vector(const RenderOptions& options, const std::string& format, const
 
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
             const Renderer& renderer, Console& console, const std::string& command) {
-    // OpenEXR is encoded, and a file of it written, while it is drawn, unless the whole picture is asked
-    // something; other formats have the beauty alone.
-    const bool is_exr = format != "png" && !console.wants_json();
+    // A picture is encoded, and a file of OpenEXR written, while it is drawn, unless the whole picture is
+    // asked something; a PNG has the beauty alone.
+    const bool is_png = format == "png", held = console.wants_json();
     const Progress progress = console.progress(command);
     Picture picture;
     Answer answer;
@@ -137,18 +144,20 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
         picture = std::move(drawn);
         console.note(picture_note(picture));
     };
-    if (is_exr && is_standard_stream(options.output)) {
-        EncodedPicture encoded = renderer.draw_exr(request, progress, console.warner());
+    if (held) {
+        take(renderer.draw(request, progress, console.warner()));
+        answer =
+            write_output(options.output, picture.image,
+                         {is_png ? ImageFormat::kPng : ImageFormat::kExr, options.written_tones()}, console);
+    } else if (is_png || is_standard_stream(options.output)) {
+        EncodedPicture encoded =
+            is_png ? renderer.draw_png(request, options.written_tones(), progress, console.warner())
+                   : renderer.draw_exr(request, progress, console.warner());
         take(std::move(encoded.picture));
-        answer = write_output(options.output, encoded.exr, console);
-    } else if (is_exr) {
+        answer = write_output(options.output, encoded.bytes, console);
+    } else {
         take(renderer.write_exr(options.output, request, progress, console.warner()));
         answer = name_output(options.output, console);
-    } else {
-        take(renderer.draw(request, progress, console.warner()));
-        answer = write_output(
-            options.output, picture.image,
-            {format == "png" ? ImageFormat::kPng : ImageFormat::kExr, options.written_tones()}, console);
     }
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)

@@ -50,15 +50,16 @@ void for_each_piece(const Channels& channels, int rows, std::size_t row_bytes, c
 
 }  // namespace
 
-std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int rows, int columns) {
+std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int rows, int columns,
+                                     BlockScratch& scratch) {
     const std::size_t row_bytes = 4 * static_cast<std::size_t>(columns);
     const std::size_t size = row_bytes * static_cast<std::size_t>(rows) * channels.size();
-    // Two buffers that are not cleared before they are filled.
-    const auto sorted = std::make_unique_for_overwrite<unsigned char[]>(size),
-               smaller = std::make_unique_for_overwrite<unsigned char[]>(size - 1);
+    auto& [sorted, smaller] = scratch;
+    sorted.resize(size);
+    smaller.resize(size - 1);
     // The second half goes on where the first one ends.
     const unsigned char last_even = channels.back()[row_bytes * static_cast<std::size_t>(rows) - 2];
-    Half even{sorted.get()}, odd{sorted.get() + size / 2, last_even};
+    Half even{sorted.data()}, odd{sorted.data() + size / 2, last_even};
     for_each_piece(channels, rows, row_bytes, [&](const unsigned char* bytes, std::size_t count) {
         even.take(bytes, count / 2);
         odd.take(bytes + 1, count / 2);
@@ -66,8 +67,8 @@ std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int 
     // The very first byte stands as it is.
     sorted[0] = channels[0][0];
 
-    const std::size_t deflated = deflate({sorted.get(), size}, {smaller.get(), size - 1});
-    std::vector<unsigned char> packed(smaller.get(), smaller.get() + deflated);
+    const std::size_t deflated = deflate({sorted.data(), size}, {smaller.data(), size - 1});
+    std::vector<unsigned char> packed(smaller.data(), smaller.data() + deflated);
     if (!packed.empty()) return packed;
     for_each_piece(channels, rows, row_bytes, [&](const unsigned char* bytes, std::size_t count) {
         packed.insert(packed.end(), bytes, bytes + count);

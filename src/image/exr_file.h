@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/image/image.h"
+#include "base/util/overwritten.h"
 
 namespace trilens {
 
@@ -19,10 +20,16 @@ inline constexpr int kZipRows = 16;
 /// A channel's values of one block: four bytes each, row after row.
 using BlockValues = const unsigned char*;
 
+/// What a block is made in, kept for the next.
+struct BlockScratch {
+    Overwritten<unsigned char> sorted, smaller;
+};
+
 /// The block's bytes in the file, of `rows` x `columns` values in each channel; channels in the order of
 /// their names. Values that deflate does not shrink are kept as they are, as the format asks.
 /// Source: Kainz and others, Technical Introduction to OpenEXR; zlib streams as RFC 1950 has them.
-std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int rows, int columns);
+std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int rows, int columns,
+                                     BlockScratch& scratch);
 
 /// The way back, for zip_block and for other programs' blocks: fills `channels`, each with room for the
 /// block's values. False where `packed` is damaged; what the channels hold is then undefined.

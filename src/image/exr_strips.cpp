@@ -110,6 +110,7 @@ struct ExrStrips::State {
     std::vector<std::size_t> order;                  // the layout's channels by name
     std::vector<Channel> waiting;                    // rows that do not fill a block, in the layout's order
     int waiting_rows = 0;
+    std::vector<BlockScratch> scratch;  // one per block that is made at the same time
 
     ~State();
     void require(exr_result_t result);
@@ -194,6 +195,7 @@ void ExrStrips::State::write_blocks(const std::vector<Channel>& channels, int fi
     const std::size_t together =
         std::min({count, kMostBlocksTogether, 2 * static_cast<std::size_t>(thread_count())});
     std::vector<std::vector<unsigned char>> packed(together);
+    scratch.resize(std::max(scratch.size(), together));
     const auto rows_of = [&](std::size_t block) {
         return std::min(kZipRows, rows - static_cast<int>(block) * kZipRows);
     };
@@ -204,7 +206,7 @@ void ExrStrips::State::write_blocks(const std::vector<Channel>& channels, int fi
         const std::size_t row = static_cast<std::size_t>(first) + block * kZipRows;
         for (std::size_t c = 0; c < order.size(); ++c)
             values[c] = bytes_of(channels[order[c]], row * static_cast<std::size_t>(width));
-        packed[slot] = zip_block(values, rows_of(block), width);
+        packed[slot] = zip_block(values, rows_of(block), width, scratch[slot]);
     };
     stages.end = [&](std::size_t block, std::size_t slot) {
         require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[slot].data(), packed[slot].size()));

@@ -3,11 +3,9 @@
 #include <dlfcn.h>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <mutex>
 
 #include "base/files/files.h"
@@ -17,7 +15,7 @@
 #include "base/util/version.h"
 #include "image/exr_file.h"
 #include "image/png_file.h"
-#include "image/tone.h"
+#include "image/png_strips.h"
 
 namespace trilens {
 
@@ -105,45 +103,6 @@ std::string library_reason(const std::string& report) {
 
 namespace {
 
-std::uint8_t stored_from_linear(double value) {
-    return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(value)));
-}
-
-/// The same by tables: which value the floats of a bucket start with, and where each value starts.
-class StoredTable {
-  public:
-    StoredTable() {
-        for (std::size_t b = 0; b < first_.size(); ++b)
-            first_[b] = stored_from_linear(static_cast<double>(start_of(static_cast<std::uint32_t>(b))));
-        for (int v = 1; v < 256; ++v) {
-            std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(1.0f);
-            while (high - low > 1) {
-                const std::uint32_t middle = (low + high) / 2;
-                const bool reached =
-                    stored_from_linear(static_cast<double>(std::bit_cast<float>(middle))) >= v;
-                (reached ? high : low) = middle;
-            }
-            start_[static_cast<std::size_t>(v)] = std::bit_cast<float>(high);
-        }
-        start_[256] = std::numeric_limits<float>::infinity();
-    }
-
-    std::uint8_t operator()(float value) const {
-        if (!(value > 0)) return 0;
-        const float inside = std::min(value, 1.0f);
-        std::size_t stored = first_[std::bit_cast<std::uint32_t>(inside) >> kShift];
-        while (inside >= start_[stored + 1]) ++stored;
-        return static_cast<std::uint8_t>(stored);
-    }
-
-  private:
-    static constexpr int kShift = 16;  // of a float's bits: a bucket spans a 128th of its values
-    static float start_of(std::uint32_t bucket) { return std::bit_cast<float>(bucket << kShift); }
-
-    std::array<std::uint8_t, (std::bit_cast<std::uint32_t>(1.0f) >> kShift) + 1> first_{};
-    std::array<float, 257> start_{};
-};
-
 constexpr const char* kNeedsLibrary = "needs trilens' library of pictures, which cannot be loaded: ";
 
 const PictureLibrary& library_to_read(const std::string& name) {
@@ -157,10 +116,9 @@ std::vector<unsigned char> encode_named_png(const std::string& name, int width, 
     TRILENS_CHECK(width > 0 && height > 0, "a picture has pixels");
     TRILENS_CHECK(rgb.size() == 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                   "three values per pixel");
-    static const StoredTable stored_of;
     std::vector<unsigned char> stored(rgb.size());
     parallel_for(rgb.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) stored[i] = stored_of(rgb[i]);
+        store_srgb(rgb.subspan(first, last - first), std::span(stored).subspan(first, last - first));
     });
     return encode_stored_png(name, width, height, stored);
 }

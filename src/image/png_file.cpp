@@ -13,6 +13,7 @@
 
 #include "base/files/files.h"
 #include "base/util/error.h"
+#include "base/util/overwritten.h"
 #include "image/tone.h"
 #include "image/zlib_stream.h"
 
@@ -144,7 +145,7 @@ std::vector<unsigned char> encode_stored_png(const std::string& name, int width,
     constexpr unsigned char kDepth = 8, kColours = 2, kPerceptual = 0, kNoFilter = 0, kUp = 2;
     const std::size_t row = 3 * static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
     // Each byte as its difference from the one above.
-    Bytes lines((row + 1) * rows);
+    Overwritten<unsigned char> lines((row + 1) * rows);
     for (std::size_t y = 0; y < rows; ++y) {
         unsigned char* const to = &lines[y * (row + 1)];
         const unsigned char *const from = &stored[y * row], *const above = from - (y > 0 ? row : 0);
@@ -154,8 +155,9 @@ std::vector<unsigned char> encode_stored_png(const std::string& name, int width,
     }
     // Where nothing shrinks deflate stores: five bytes for a block of at most 65,535 (RFC 1951, 3.2.4).
     constexpr std::size_t kAround = 64, kLeastBlock = 4096, kOfBlock = 5;
-    Bytes packed(lines.size() + kAround + kOfBlock * (lines.size() / kLeastBlock));
-    packed.resize(deflate(lines, packed));
+    Overwritten<unsigned char> room(lines.size() + kAround + kOfBlock * (lines.size() / kLeastBlock));
+    const std::span<const unsigned char> packed(
+        room.data(), deflate({lines.data(), lines.size()}, {room.data(), room.size()}));
     if (packed.empty() || packed.size() > kMostInChunk) throw OutputError(name, "is too large for a PNG");
 
     Bytes header;

@@ -3,9 +3,10 @@
 #include <set>
 #include <utility>
 
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "base/util/parallel.h"
 #include "image/image_io.h"
+#include "image/png_strips.h"
 
 namespace trilens {
 namespace {
@@ -14,31 +15,11 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-std::vector<float> beauty_of(const Image& image) {
-    std::vector<float> rgb(3 * image.pixels());
-    int c = 0;
-    for (const char* name : {"R", "G", "B"}) {
-        const Channel* channel = image.find(name);
-        if (!channel || channel->is_id()) throw InputError("", name, "a picture needs R, G and B");
-        const std::vector<float>& values = channel->floats();
-        for (std::size_t p = 0; p < values.size(); ++p) rgb[3 * p + static_cast<std::size_t>(c)] = values[p];
-        ++c;
-    }
-    return rgb;
-}
-
-std::vector<float> shown_beauty(const Image& image, const ToneMapping& tone) {
-    check_tone_mapping(tone);
-    std::vector<float> rgb = beauty_of(image);
-    if (tone.curve == ToneCurve::kLinear && tone.exposure == 0) return rgb;
-    parallel_for(rgb.size() / 3, 1 << 14, [&](std::size_t from, std::size_t to) {
-        for (std::size_t p = from; p < to; ++p) {
-            const Vec3 shown = tone_mapped(Vec3(rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2]), tone);
-            for (std::size_t c = 0; c < 3; ++c)
-                rgb[3 * p + c] = static_cast<float>(shown[static_cast<int>(c)]);
-        }
-    });
-    return rgb;
+std::vector<unsigned char> encode_beauty(const std::string& name, const Image& image,
+                                         const ToneMapping& tone) {
+    PngStrips strips(name, image, tone);
+    strips.add(image.channels, image.data_height);
+    return strips.finish();
 }
 
 }  // namespace
@@ -88,15 +69,13 @@ void write_image(const std::string& file, const Image& image, const ToneMapping&
 void write_image_as(const std::string& file, const Image& image, ImageFormat format,
                     const ToneMapping& tone) {
     check_image(image);
-    if (format == ImageFormat::kPng)
-        return write_png(file, image.data_width, image.data_height, shown_beauty(image, tone));
+    if (format == ImageFormat::kPng) return replace_file(file, encode_beauty(file, image, tone));
     write_exr(file, image);
 }
 
 std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format, const ToneMapping& tone) {
     check_image(image);
-    if (format == ImageFormat::kPng)
-        return encode_png(image.data_width, image.data_height, shown_beauty(image, tone));
+    if (format == ImageFormat::kPng) return encode_beauty("PNG", image, tone);
     return encode_exr("image", image);
 }
 

@@ -9,6 +9,7 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "image/exr_file.h"
+#include "image/png_strips.h"
 #include "render/frame/frame.h"
 #include "render/picture/picture.h"
 #include "render/project/point_projector.h"
@@ -154,7 +155,22 @@ EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress&
         [&](const std::vector<Channel>& channels, int rows) { strips->add(channels, 0, rows); }};
     EncodedPicture encoded;
     encoded.picture = draw_picture(*world_, request, progress, warn, &sink);
-    encoded.exr = strips->finish();
+    encoded.bytes = strips->finish();
+    return encoded;
+}
+
+EncodedPicture Renderer::draw_png(const PictureRequest& request, const ToneMapping& tone,
+                                  const Progress& progress, const Warn& warn) const {
+    const auto use = users_->draw();
+    check_request(*world_, request);
+    check_tone_mapping(tone);
+    std::optional<PngStrips> strips;
+    const StripSink sink{
+        [&](const Image& layout) { strips.emplace("PNG", layout, tone); },
+        [&](const std::vector<Channel>& channels, int rows) { strips->add(channels, rows); }};
+    EncodedPicture encoded;
+    encoded.picture = draw_picture(*world_, request, progress, warn, &sink);
+    encoded.bytes = strips->finish();
     return encoded;
 }
 

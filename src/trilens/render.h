@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/util/error.h"
+#include "image/tone.h"
 #include "render/frame/request.h"
 #include "render/picture/explain.h"
 #include "render/project/project.h"
@@ -44,10 +45,10 @@ struct SeenTriangle {
     Vec3 position{0};  // the world point that is seen
 };
 
-/// A picture as the bytes of an OpenEXR file.
+/// A picture as the bytes of a file.
 struct EncodedPicture {
     Picture picture;  // its image has windows and header, but no channels
-    std::vector<unsigned char> exr;
+    std::vector<unsigned char> bytes;
 };
 
 /// The outlines of what a camera and its optics show.
@@ -104,10 +105,15 @@ class Renderer {
     EncodedPicture draw_exr(const PictureRequest& request, const Progress& progress = {},
                             const Warn& warn = {}) const;
 
-    /// The same into a file, which is written while the picture is drawn and takes its name once it is whole:
-    /// neither the picture nor its bytes are held. The picture that is returned has windows and header, but
-    /// no channels. Throws as draw does, and OutputError where the file cannot be written; then nothing is
-    /// left of it.
+    /// Its beauty as the PNG that write_image would write. Throws as draw_exr does, and UsageError as
+    /// write_image does.
+    EncodedPicture draw_png(const PictureRequest& request, const ToneMapping& tone = {},
+                            const Progress& progress = {}, const Warn& warn = {}) const;
+
+    /// The same as draw_exr into a file, which is written while the picture is drawn and takes its name once
+    /// it is whole: neither the picture nor its bytes are held. The picture that is returned has windows and
+    /// header, but no channels. Throws as draw does, and OutputError where the file cannot be written; then
+    /// nothing is left of it.
     Picture write_exr(const std::string& file, const PictureRequest& request, const Progress& progress = {},
                       const Warn& warn = {}) const;
 

@@ -123,7 +123,7 @@ std::vector<Task> tasks(const std::string& folder) {
          [] {
              PictureRequest request;
              request.engine = Engine::kLimitTruth;
-             return text_of(Renderer(parse_scene(kSmallRoom)).draw_exr(request).exr);
+             return text_of(Renderer(parse_scene(kSmallRoom)).draw_exr(request).bytes);
          }},
         {"project",
          [] {

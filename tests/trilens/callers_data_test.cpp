@@ -184,6 +184,7 @@ TEST_CASE("a renderer refuses requests that are none", "[trilens][bad-input]") {
         request.layers = {n, 0, 1 + n % 7, n, {}};
         only_errors("window", [&] { renderer.draw(request, {}, quiet); });
         only_errors("draw_exr", [&] { renderer.draw_exr(request, {}, quiet); });
+        only_errors("draw_png", [&] { renderer.draw_png(request, {}, {}, quiet); });
         only_errors("write_exr", [&] { renderer.write_exr(written, request, {}, quiet); });
         request.layers = {};
         only_errors("explain", [&] { renderer.explain(request, n, n); });

@@ -67,7 +67,7 @@ TEST_CASE("a picture that is written while it is drawn has the bytes of one that
     const Renderer renderer(small_scene());
     const EncodedPicture held = renderer.draw_exr({});
     const Picture picture = renderer.write_exr(file, {});
-    CHECK(bytes_of(file) == held.exr);
+    CHECK(bytes_of(file) == held.bytes);
     CHECK(picture.image.channels.empty());
     CHECK(picture.image.metadata == held.picture.image.metadata);
     CHECK(picture.statistics.optic_pixels == held.picture.statistics.optic_pixels);
@@ -88,8 +88,24 @@ TEST_CASE("a picture that is written while it is drawn has the bytes of one that
     wrong.layers.layers = {"nothing"};
     CHECK_THROWS_AS(renderer.write_exr(file, wrong), UsageError);
     CHECK_THROWS_AS(renderer.write_exr(folder + "/none/a.exr", {}), OutputError);
-    CHECK(bytes_of(file) == held.exr);
+    CHECK(bytes_of(file) == held.bytes);
     CHECK(std::distance(fs::directory_iterator(folder), {}) == 1);
+}
+
+TEST_CASE("a PNG that is encoded while it is drawn has the bytes of one that was held", "[trilens]") {
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        const Renderer renderer = renderer_of([](Scene& scene) { scene.film = {210, 333, 1}; });
+        PictureRequest request;
+        request.layers = {5, 7, 201, 331, {"Z"}};
+        for (const ToneMapping& tone : {ToneMapping{}, ToneMapping{0.7, ToneCurve::kAces}}) {
+            const EncodedPicture encoded = renderer.draw_png(request, tone);
+            CHECK(encoded.bytes == encode_image_as(renderer.draw(request).image, ImageFormat::kPng, tone));
+            CHECK(encoded.picture.image.channels.empty());
+        }
+    }
+    set_thread_count(0);
+    CHECK_THROWS_AS(renderer_of([](Scene&) {}).draw_png({}, {1e6, ToneCurve::kLinear}), UsageError);
 }
 
 TEST_CASE("a scene built in memory is drawn, and one that is none is refused with its place",

@@ -57,7 +57,8 @@ std::vector<Question> questions(const Renderer& renderer, const Image& a, const 
     write_image(file, a);
     return {
         {"draw", [&renderer] { return text_of(encode_image(renderer.draw({}).image)); }},
-        {"draw_exr", [&renderer] { return text_of(renderer.draw_exr({}).exr); }},
+        {"draw_exr", [&renderer] { return text_of(renderer.draw_exr({}).bytes); }},
+        {"draw_png", [&renderer] { return text_of(renderer.draw_png({}).bytes); }},
         {"truth", [&renderer, truth] { return text_of(encode_image(renderer.draw(truth).image)); }},
         {"max_error", [&renderer, bounded] { return text_of(encode_image(renderer.draw(bounded).image)); }},
         {"project",

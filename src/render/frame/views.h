@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/util/overwritten.h"
 #include "paths/trace/follow.h"
 #include "shade/optic_weights.h"
 #include "volume/volume_integral.h"
@@ -61,7 +62,7 @@ struct SampleVolumes {
 /// What the samples of a grid show.
 struct SampleViews {
     std::vector<SampleView> samples;     // one per sample
-    std::vector<OpticView> of_optics;    // one per sample; where it shows no optic it holds anything
+    Overwritten<OpticView> of_optics;    // one per sample; where it shows no optic it holds anything
     std::vector<PathEnd> ends;           // of all samples, those of one side by side
     std::vector<Step> steps;             // of all ends; ends with one history may share theirs
     std::vector<Media> around;           // that rays of the camera start in

@@ -316,7 +316,8 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     const int rows =
         band_rows(static_cast<std::size_t>(width * side * side), by_fragments ? kMostKeys : kMostBandSamples);
     const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
-    const std::size_t slots = std::min(bands, kBandsAtOnce);
+    const std::size_t slots =
+        std::min({bands, kBandsAtOnce, static_cast<std::size_t>(thread_count())});
 
     // Where pixels go to a sink each band on its way has a canvas of its own, otherwise all share the
     // image's.
