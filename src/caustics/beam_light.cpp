@@ -85,9 +85,11 @@ struct BeamLight::Piece {
 
 /// What glass and blended surfaces leave of light on the way from the last optic.
 Vec3 BeamLight::left_of(const LightHistory& history, const Vec3& origin, const Receiver& receiver) const {
-    if (space_.veil && history.medium == kNone)
-        return Vec3(space_.veil({receiver.lifted, origin - receiver.lifted}).through);
-    return body_transmittance(*space_.optics, history.medium, length(origin - receiver.point));
+    const Vec3 left = body_transmittance(*space_.optics, history.medium, length(origin - receiver.point));
+    if (!space_.veil) return left;
+    // What lies on the surface of glass is outside.
+    const double inset = history.medium == kNone ? 0 : kSamePlace;
+    return space_.veil({receiver.lifted, (1 - inset) * (origin - receiver.lifted)}).through * left;
 }
 
 /// Irradiance on the receiver's plane times the cosine that counts; none where nothing comes.

@@ -23,9 +23,12 @@ struct Stretch {
 /// Takes from light what blended surfaces on a stretch keep, and adds them to `veils`.
 void come_through(const LightSpace& space, const Stretch& stretch, Vec3& light,
                   std::vector<VeilSurface>& veils) {
-    if (!space.veil || stretch.medium != kNone) return;
-    const Vec3 along = stretch.length * stretch.ray.direction;
-    const Veil veil = space.veil({stretch.ray.origin + along, -along});
+    if (!space.veil) return;
+    // What lies on the surface of glass is outside.
+    const double inset = stretch.medium == kNone ? 0 : kSamePlace * stretch.length;
+    const Vec3& direction = stretch.ray.direction;
+    const Veil veil = space.veil({stretch.ray.origin + (stretch.length - inset) * direction,
+                                  -(stretch.length - 2 * inset) * direction});
     light *= veil.through;
     veils.insert(veils.end(), veil.surfaces.begin(), veil.surfaces.end());
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <set>
 
 #include "base/util/check.h"
@@ -12,7 +11,6 @@
 #include "json/json.h"
 #include "json/schema.h"
 #include "scene/animation/animation_keys.h"
-#include "scene/data/alpha_cut.h"
 #include "scene/data/light_objects.h"
 #include "scene/formats/lens_file.h"
 #include "scene/imports/expand_imports.h"
@@ -84,18 +82,6 @@ void read_terrains_as_seen(const Node& root, Reading& reading) {
     }
 }
 
-/// The first material by which any surface shows what lies behind in part.
-std::optional<Id> first_that_blends(const Scene& scene) {
-    std::optional<Id> first;
-    for (const Mesh& mesh : scene.meshes)
-        for (std::size_t t = 0; t < mesh.object.material.size(); ++t) {
-            const Id i = mesh.object.material[t];
-            if (i >= scene.materials.size() || (first && *first <= i)) continue;
-            if (blends(blending_of(scene.materials[i]), mesh.object, t)) first = i;
-        }
-    return first;
-}
-
 /// What would be seen, but is black or plain.
 void warn_of_appearance(Reading& reading) {
     const Scene& scene = reading.scene;
@@ -109,14 +95,6 @@ void warn_of_appearance(Reading& reading) {
         if (i >= scene.materials.size()) continue;
         needs_light = needs_light || !scene.materials[i].unlit;
     }
-    const auto is_glass = [&](const Mesh& mesh) {
-        return mesh.role == Role::kOptic && scene.materials[mesh.material].transmission_factor == 1;
-    };
-    const bool has_glass = std::any_of(scene.meshes.begin(), scene.meshes.end(), is_glass);
-    const std::optional<Id> blended = first_that_blends(scene);
-    if (blended && has_glass)
-        reading.warn("/materials/" + std::to_string(*blended),
-                     "blends with what is behind: such surfaces are not drawn inside of glass");
     const bool is_baked = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                       [](const Mesh& mesh) { return !mesh.object.baked.empty(); });
     if (needs_light && scene.lights.empty() && !is_baked)

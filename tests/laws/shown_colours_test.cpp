@@ -99,7 +99,7 @@ std::unique_ptr<World> world_of_text(const std::string& json) {
         ignore);
 }
 
-struct Case {
+struct ShownCase {
     std::string name;
     Window window{};
     std::size_t most_beauty = 0, most_layer = 0;  // of the whole film; 0 unless said why
@@ -115,7 +115,7 @@ Image drawn(const World& world, std::size_t camera, Engine engine, const Window&
 }
 
 /// Every camera and every layer of the world at its own settings.
-void check_colours(const World& world, const Case& one) {
+void check_colours(const World& world, const ShownCase& one) {
     for (std::size_t camera = 0; camera < world.scene.cameras.size(); ++camera) {
         const Image picture = drawn(world, camera, Engine::kExact, one.window),
                     truth = drawn(world, camera, Engine::kLimitTruth, one.window);
@@ -132,14 +132,14 @@ void check_colours(const World& world, const Case& one) {
 }
 
 /// What is known to be off, and why.
-Case case_of(const std::string& name) {
+ShownCase case_of(const std::string& name) {
     // Figures of the thesis that show what 5 x 5 facets do: outlines are polygons.
     if (name == "thesis/fig_7_4") return {name, {}, 1, 80};
     if (name == "thesis/fig_7_5") return {name, {}, 27, 27};
     return {name};
 }
 
-void expect_shown_colours(const Case& one) {
+void expect_shown_colours(const ShownCase& one) {
     if (one.name == "engine" && !std::filesystem::exists("/usr/share/assimp/models"))
         return note_skip("colours of scene " + one.name, "needs the models of the package assimp-testmodels");
     check_colours(*own_world(one.name), one);

@@ -138,7 +138,7 @@ TEST_CASE("cells by projection are cells by rays, in order, also where rays star
         for (const double until : {std::numeric_limits<double>::infinity(), 4.6, 0.3}) {
             const std::vector<double> reach(kFilm.size(), until);
             std::vector<std::vector<CellStretch>> found(kFilm.size()), expected(kFilm.size());
-            project_cells(volume, camera.mesh, owned, kFilm, reach,
+            project_cells(volume, {camera.mesh, owned, kFilm, reach},
                           [&](Id s, const Ray& ray, const std::vector<CellStretch>& cells) {
                               found[s] = cells;
                               expected[s] = trace_cells(volume, ray, until);
@@ -175,7 +175,7 @@ TEST_CASE("rays that run along faces of cells see what rays beside them see", "[
         const FacetSamples owned = rasterize_facets(camera.mesh, film);
         const std::vector<double> until(film.size(), std::numeric_limits<double>::infinity());
         std::vector<double> lost(film.size(), 0.0);
-        project_cells(volume, camera.mesh, owned, film, until,
+        project_cells(volume, {camera.mesh, owned, film, until},
                       [&](Id s, const Ray& ray, const std::vector<CellStretch>& cells) {
                           const std::vector<CellStretch> traced = trace_cells(volume, ray, until[s]);
                           Ray beside = ray;

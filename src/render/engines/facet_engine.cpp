@@ -16,6 +16,8 @@
 namespace trilens {
 namespace {
 
+constexpr std::size_t kLayersPerTask = 64;
+
 DrawMesh project_through(const PreparedScene& scene) {
     return [&scene](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                     std::span<Hit> hits) { draw(scene, mesh, owned, grid, hits); };
@@ -71,6 +73,8 @@ class FacetViewer : public Viewer {
     void view_rims(const SampleGrid& grid, SampleViews& views) const;
     void trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
                     std::vector<PathEnds>& ends) const;
+    double up_to_first(const SampleView& view) const;
+    void view_layers_in_glass(SampleViews& views) const;
     void view_volumes(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
@@ -252,18 +256,37 @@ void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid
                       of_optic[i], views, ends[i]);
 }
 
+/// Of t along a camera's ray: to what its sample shows first.
+double FacetViewer::up_to_first(const SampleView& view) const {
+    return view.hit.seen() || view.optic != kNone ? view.depth - frame_.camera.near_depth : reach();
+}
+
+/// Of a camera that stands in glass, what blends there.
+void FacetViewer::view_layers_in_glass(SampleViews& views) const {
+    if (!world_.blended || views.around.empty()) return;
+    parallel_for(views.samples.size(), kLayersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t s = from; s < to; ++s) {
+            const SampleView& view = views.samples[s];
+            if (is_in_air(world_, views, view)) continue;
+            const Material* glass = glass_around(world_, views.around_of(view));
+            const double first = up_to_first(view);
+            views.volumes[s].first = trace_layers(
+                world_, view.ray, view.optic != kNone ? up_to_optic(first, glass) : first, glass);
+        }
+    });
+}
+
 /// The camera's own rays through the volumes, up to what each sample shows first.
 void FacetViewer::view_volumes(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
     std::vector<double> until(grid.size());
     std::vector<VolumeLight> light(grid.size());
     for (std::size_t s = 0; s < until.size(); ++s) {
         const SampleView& view = views.samples[s];
-        const bool is_closed = view.hit.seen() || view.optic != kNone;
-        until[s] = is_closed ? view.depth - frame_.camera.near_depth : reach();
-        if (!is_in_air(world_, views, view)) until[s] = 0;
+        until[s] = is_in_air(world_, views, view) ? up_to_first(view) : 0;
     }
-    draw_volumes_(frame_.camera.mesh, owned, grid, until, light);
+    draw_volumes_({frame_.camera.mesh, owned, grid, until}, light);
     for (std::size_t s = 0; s < until.size(); ++s) views.volumes[s].first = light[s];
+    view_layers_in_glass(views);
 }
 
 void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {

@@ -48,13 +48,19 @@ bool lies_where_rays_start(const PathNode& node, Id leaf, const Vec3& place) {
            std::fabs(dot(place - a, normal)) <= kOnPlane * std::max(length(along_b), length(along_c));
 }
 
-/// How far a facet reaches where its rays come to the next optic: the longest of its sides there.
-double size_at_next(const PathNode& node, Id facet) {
+/// Where the rays of a facet's corners come to the next optic.
+std::array<Vec3, 3> places_at_next(const PathNode& node, Id facet) {
     std::array<Vec3, 3> at;
     for (std::size_t k = 0; k < 3; ++k) {
         const Id corner = node.mesh.facets[facet][k];
         at[k] = node.mesh.rays[corner].origin + node.next[corner] * node.mesh.rays[corner].direction;
     }
+    return at;
+}
+
+/// How far a facet reaches there: the longest of its sides.
+double size_at_next(const PathNode& node, Id facet) {
+    const std::array<Vec3, 3> at = places_at_next(node, facet);
     return std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
 }
 
@@ -127,14 +133,30 @@ Vec3 HistoryDrawer::weight_at(Id index, Id facet, const Vec3& share) const {
     return glm::max(weight, Vec3(0));
 }
 
+/// Of t: where a leg meets the next optic. What blends may lie on that, so there it is the plane through the
+/// places where the corners' rays meet it, which is where the next legs start.
+double HistoryDrawer::up_to_next(Id index, Id facet, const Vec3& share) const {
+    const PathNode& node = paths_.nodes[index];
+    const IdTriple& corner = node.mesh.facets[facet];
+    double next = 0;
+    for (int k = 0; k < 3; ++k) next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
+    if (!engine_.world.blended || !std::isfinite(next)) return next;
+    const std::array<Vec3, 3> at = places_at_next(node, facet);
+    const Vec3 normal = cross(at[1] - at[0], at[2] - at[0]);
+    const Ray ray = interpolated_ray(node.mesh, facet, share);
+    const double t = dot(normal, at[0] - ray.origin) / dot(normal, ray.direction);
+    return std::fabs(t - next) < kNearTouch * next ? t : next;
+}
+
 /// The leg of each owned sample through the volumes: up to what it sees where its path ends, else up to the
-/// next optic. In glass there are none.
+/// next optic. In glass there is what blends.
 void HistoryDrawer::draw_volumes(Id index, const FacetSamples& owned, std::span<const Hit> hits,
                                  const std::vector<char>& is_end) {
     const PathNode& node = paths_.nodes[index];
     std::vector<double>& through = through_[index];
     through = node.parent == kNone ? std::vector<double>(grid_.size(), 1.0) : through_[node.parent];
-    if (node.medium != kNone) return;
+    const Material* glass = glass_of(engine_.world, node.medium);
+    if (glass && !engine_.world.blended) return;
     std::vector<double> until(grid_.size(), 0.0);
     std::vector<VolumeLight> light(grid_.size());
     const auto for_each_owned = [&](const auto& body) {
@@ -150,15 +172,10 @@ void HistoryDrawer::draw_volumes(Id index, const FacetSamples& owned, std::span<
     };
     for_each_owned([&](Id f, std::size_t i, const Vec3& share) {
         const Id s = owned.sample[i];
-        double next = 0;
-        for (int k = 0; k < 3; ++k)
-            next += share[k] * node.next[node.mesh.facets[f][static_cast<std::size_t>(k)]];
-        if (is_end[i])
-            until[s] = hits[s].seen() ? hits[s].t : std::numeric_limits<double>::infinity();
-        else
-            until[s] = hits[s].seen() ? std::min(next, hits[s].t) : next;
+        const double seen = hits[s].seen() ? hits[s].t : std::numeric_limits<double>::infinity();
+        until[s] = is_end[i] ? seen : std::min(up_to_optic(up_to_next(index, f, share), glass), seen);
     });
-    (*engine_.volumes)(node.mesh, owned, grid_, until, light);
+    (*engine_.volumes)({node.mesh, owned, grid_, until, glass}, light);
     for_each_owned([&](Id f, std::size_t i, const Vec3& share) {
         const Id s = owned.sample[i];
         SampleVolumes& found = (*engine_.found)[s];

@@ -102,9 +102,12 @@ void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media
     const FirstSurface first = first_surface(paths_, objects_, view.ray, reach);
     view.hit = first.object;
     if (view.hit.seen()) view.depth = view.hit.t;
-    if (volumes && !glass_around(world_, around)) {
-        const double until = first.optic != kNone ? first.at.t : view.hit.seen() ? view.hit.t : reach;
-        volumes->first = trace_layers(world_, view.ray, until);
+    if (volumes) {
+        const Material* glass = glass_around(world_, around);
+        const double until = first.optic != kNone ? up_to_optic(first.at.t, glass)
+                             : view.hit.seen()    ? view.hit.t
+                                                  : reach;
+        volumes->first = trace_layers(world_, view.ray, until, glass);
     }
     if (first.optic == kNone) return;
     view.optic = first.optic;

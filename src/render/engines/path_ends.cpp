@@ -221,7 +221,7 @@ void ShownDrawer::draw(const Shown& shown, PathEnds& out) {
     const std::vector<Id> leaf = leaves_of_samples(paths, shown.owned, grid_);
     PathEnds own;
     std::vector<SampleVolumes> volumes(params_.volumes ? grid_.size() : 0);
-    HistoryDrawer drawer({params_.draw, params_.volumes, &volumes}, paths, grid_, leaf);
+    HistoryDrawer drawer({params_.world, params_.draw, params_.volumes, &volumes}, paths, grid_, leaf);
     for (const Id node : nodes_in_order(paths)) drawer.draw(node, own);
     note(shown, leaf);
     if (params_.volumes)

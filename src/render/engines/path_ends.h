@@ -38,6 +38,7 @@ struct PathEnds {
 
 /// What draws histories. All must live longer.
 struct HistoryEngine {
+    const World& world;
     const DrawMesh& mesh;                  // the objects
     const DrawVolumes* volumes = nullptr;  // null: there are none
     std::vector<SampleVolumes>* found =
@@ -65,6 +66,7 @@ class HistoryDrawer {
     std::vector<char> find_ends(Id node, const FacetSamples& owned, std::span<const Hit> hits);
     void set_end(Id node, Id facet, const Vec3& share, PathEnd& end) const;
     Vec3 weight_at(Id node, Id facet, const Vec3& share) const;
+    double up_to_next(Id node, Id facet, const Vec3& share) const;
     void draw_volumes(Id node, const FacetSamples& owned, std::span<const Hit> hits,
                       const std::vector<char>& is_end);
 

@@ -111,18 +111,14 @@ void append_steps(const std::vector<PathSegment>& segments, Id last, std::vector
 
 namespace {
 
-/// Adds the emission along each segment in the air; the transmittance up to the end of each.
+/// Adds the emission along each segment; the transmittance up to the end of each.
 std::vector<double> add_volumes(const World& world, const std::vector<PathSegment>& segments,
                                 SampleVolumes& found) {
     std::vector<double> through(segments.size(), 1.0);
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const PathSegment& segment = segments[i];
         if (segment.parent != kNone) through[i] = through[segment.parent];
-        if (segment.medium != kNone) continue;
-        const double until = !segment.ends        ? segment.next
-                             : segment.hit.seen() ? segment.hit.t
-                                                  : std::numeric_limits<double>::infinity();
-        const VolumeLight light = trace_layers(world, segment.ray, until);
+        const VolumeLight light = trace_layers(world, segment);
         (segment.path == Path::kReflect ? found.reflect : found.refract) +=
             through[i] * segment.weight * light.emission;
         through[i] *= light.transmittance;

@@ -47,10 +47,6 @@ std::optional<Vec3> eye_of(const CameraRays& camera) {
     return middle && middle->origin == *eye ? eye : std::nullopt;
 }
 
-const Material* glass_of(const World& world, Id optic) {
-    return optic == kNone ? nullptr : &world.scene.materials[world.optics[optic].material];
-}
-
 Id active(const World& world, const Media& media) {
     return media.active([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });
 }

@@ -118,15 +118,10 @@ void Gathering::follow(const FollowedPaths& followed) {
         Vec3 weight = share * segment.first_weight * segment.weight;
         if (has_layers(world_)) {
             if (segment.parent != kNone) through[i] = through[segment.parent];
-            if (segment.medium == kNone) {
-                const double until = !segment.ends        ? segment.next
-                                     : segment.hit.seen() ? segment.hit.t
-                                                          : std::numeric_limits<double>::infinity();
-                const VolumeLight light = trace_layers(world_, segment.ray, until);
-                (segment.path == Path::kReflect ? emitted_reflect_ : emitted_refract_) +=
-                    through[i] * weight * light.emission;
-                through[i] *= light.transmittance;
-            }
+            const VolumeLight light = trace_layers(world_, segment);
+            (segment.path == Path::kReflect ? emitted_reflect_ : emitted_refract_) +=
+                through[i] * weight * light.emission;
+            through[i] *= light.transmittance;
             weight *= through[i];
         }
         if (segment.ends && weight != Vec3(0)) add_end(followed, i, weight);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/util/parallel.h"
 #include "projector/scalar/scalar_engine.h"
 #include "render/world/blended_surfaces.h"
 #include "render/world/volume_geometry.h"
+#include "shade/shade.h"
 
 namespace trilens {
 namespace {
@@ -40,23 +42,23 @@ VolumeLight trace_volumes(const World& world, const Ray& ray, double until) {
     return integrate(rays);
 }
 
-void project_cells(const VolumeGeometry& volume, const RayMesh& mesh, const FacetSamples& owned,
-                   const SampleGrid& grid, std::span<const double> until, const TakeCells& take) {
+void project_cells(const VolumeGeometry& volume, const LayerRays& rays, const TakeCells& take) {
     const CrossedCells crossed(volume.cells(), volume.faces());
-    find_crossings(volume.prepared_faces(), mesh, owned, grid, until,
+    find_crossings(volume.prepared_faces(), rays.mesh, rays.owned, rays.grid, rays.until,
                    [&](Id sample, const Ray& ray, std::span<const Crossing> crossings) {
                        std::vector<FaceCrossing> faces;
                        faces.reserve(crossings.size());
                        for (const Crossing& one : crossings) faces.push_back({one.triangle, one.t});
-                       take(sample, ray, crossed.find(ray, until[sample], faces));
+                       take(sample, ray, crossed.find(ray, rays.until[sample], faces));
                    });
 }
 
 DrawVolumes project_volumes(const World& world) {
-    return [&world](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                    std::span<const double> until, std::span<VolumeLight> light) {
+    return [&world](const LayerRays& of, std::span<VolumeLight> light) {
+        if (of.glass) return;
+        const SampleGrid& grid = of.grid;
         if (world.volumes.size() == 1) {
-            project_cells(*world.volumes[0], mesh, owned, grid, until,
+            project_cells(*world.volumes[0], of,
                           [&](Id sample, const Ray& ray, const std::vector<CellStretch>& cells) {
                               const RayThroughVolume one = through(world, 0, ray, cells);
                               light[sample] = integrate({&one, 1});
@@ -65,7 +67,7 @@ DrawVolumes project_volumes(const World& world) {
         }
         std::vector<std::vector<RayThroughVolume>> rays(grid.size());
         for (std::size_t v = 0; v < world.volumes.size(); ++v)
-            project_cells(*world.volumes[v], mesh, owned, grid, until,
+            project_cells(*world.volumes[v], of,
                           [&](Id sample, const Ray& ray, const std::vector<CellStretch>& cells) {
                               rays[sample].push_back(through(world, v, ray, cells));
                           });
@@ -76,14 +78,28 @@ DrawVolumes project_volumes(const World& world) {
     };
 }
 
-VolumeLight trace_layers(const World& world, const Ray& ray, double until) {
-    if (!world.blended) return trace_volumes(world, ray, until);
-    const std::vector<Hit> crossings = world.blended->crossings(ray, until);
-    const std::vector<VolumeLight> surfaces = world.blended->shade(ray, crossings);
+namespace {
+
+/// What glass leaves of the light of the surfaces in it.
+void dim_by_glass(const Material& glass, const Ray& ray, std::span<const Hit> crossings,
+                  std::span<VolumeLight> surfaces) {
+    const double unit = length(ray.direction);
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+        surfaces[i].emission *= volume_transmittance(glass, crossings[i].t * unit);
+}
+
+}  // namespace
+
+VolumeLight trace_layers(const World& world, const Ray& ray, double until, const Material* glass) {
+    if (!world.blended) return glass ? VolumeLight() : trace_volumes(world, ray, until);
+    const std::vector<Hit> crossings =
+        glass ? world.blended->crossings_in_glass(ray, until) : world.blended->crossings(ray, until);
+    std::vector<VolumeLight> surfaces = world.blended->shade(ray, crossings);
+    if (glass) dim_by_glass(*glass, ray, crossings, surfaces);
     VolumeLight sum;
     double from = 0;
     const auto add_cells = [&](double to) {
-        if (has_volumes(world) && to > from)
+        if (has_volumes(world) && !glass && to > from)
             sum.put_behind(
                 trace_volumes(world, {ray.origin + from * ray.direction, ray.direction}, to - from));
         from = to;
@@ -96,19 +112,27 @@ VolumeLight trace_layers(const World& world, const Ray& ray, double until) {
     return sum;
 }
 
+VolumeLight trace_layers(const World& world, const PathSegment& segment) {
+    const Material* glass = glass_of(world, segment.medium);
+    const double until = !segment.ends        ? up_to_optic(segment.next, glass)
+                         : segment.hit.seen() ? segment.hit.t
+                                              : std::numeric_limits<double>::infinity();
+    return trace_layers(world, segment.ray, until, glass);
+}
+
 DrawVolumes trace_layers(const World& world) {
-    return [&world](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                    std::span<const double> until, std::span<VolumeLight> light) {
+    return [&world](const LayerRays& of, std::span<VolumeLight> light) {
+        const RayMesh& mesh = of.mesh;
         for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-            if (!mesh.has_rays(f) || owned.of(f).empty()) continue;
+            if (!mesh.has_rays(f) || of.owned.of(f).empty()) continue;
             const FacetWeights weights = facet_weights(mesh, f);
             if (weights.edge_on) continue;
-            const std::span<const Id> samples = owned.of(f);
+            const std::span<const Id> samples = of.owned.of(f);
             parallel_for(samples.size(), kVolumeRaysPerTask, [&](std::size_t from, std::size_t to) {
                 for (const Id s : samples.subspan(from, to - from))
-                    if (until[s] > 0)
-                        light[s] =
-                            trace_layers(world, sample_ray(mesh, f, weights, grid.position(s)), until[s]);
+                    if (of.until[s] > 0)
+                        light[s] = trace_layers(world, sample_ray(mesh, f, weights, of.grid.position(s)),
+                                                of.until[s], of.glass);
             });
         }
     };

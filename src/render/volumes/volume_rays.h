@@ -8,6 +8,7 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
+#include "paths/trace/follow.h"
 #include "render/world/world.h"
 #include "volume/cell_faces.h"
 
@@ -30,15 +31,34 @@ std::vector<CellStretch> trace_cells(const VolumeGeometry& volume, const Ray& ra
 /// The light of all volumes along a ray, its cells by trace_cells.
 VolumeLight trace_volumes(const World& world, const Ray& ray, double until);
 
-/// The light of all volumes and blended surfaces along a ray; surfaces by Embree's tree, and, where there are
-/// any, cells, too.
-VolumeLight trace_layers(const World& world, const Ray& ray, double until);
+/// Of t: what lies no farther than this before the surface where a ray leaves glass is outside.
+inline constexpr double kOnGlass = 1e-8;
 
-/// The light of all volumes along the interpolated ray of every sample that `owned` gives to a facet with
-/// rays, from t = 0 to until[sample], written to light[sample]; others are left alone, as are samples whose
-/// `until` is not positive. until.size() == light.size() == grid.size().
-using DrawVolumes = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&,
-                                       std::span<const double> until, std::span<VolumeLight> light)>;
+/// Where a leg of a path up to an optic ends for what lies in layers on its way. `glass`: that it runs in.
+inline double up_to_optic(double next, const Material* glass) {
+    return glass ? next * (1 - kOnGlass) : next;
+}
+
+/// The light of all volumes and blended surfaces along a ray; surfaces by Embree's tree, and, where there are
+/// any, cells, too. In glass volumes are none, and it dims what surfaces add by their distance; what lies on
+/// a body's surface is outside.
+VolumeLight trace_layers(const World& world, const Ray& ray, double until, const Material* glass = nullptr);
+
+/// Of a path's segment, up to what it meets.
+VolumeLight trace_layers(const World& world, const PathSegment& segment);
+
+/// The rays of the samples that `owned` gives to facets, from t = 0 to until[sample].
+struct LayerRays {
+    const RayMesh& mesh;
+    const FacetSamples& owned;
+    const SampleGrid& grid;
+    std::span<const double> until;    // one per sample; not positive: the sample has no such ray
+    const Material* glass = nullptr;  // that they run in; null: air
+};
+
+/// The light of all volumes along the interpolated ray of every sample of a facet with rays, written to
+/// light[sample]; others are left alone.
+using DrawVolumes = std::function<void(const LayerRays&, std::span<VolumeLight> light)>;
 
 /// By the projector: the faces of the cells through the RayMesh, all that a sample crosses
 /// (find_crossings), in each cell the nearest plane behind (CrossedCells).
@@ -49,7 +69,6 @@ DrawVolumes trace_layers(const World& world);
 
 /// The cells of one volume by the projector: told each sample's, from many threads.
 using TakeCells = std::function<void(Id sample, const Ray& ray, const std::vector<CellStretch>& cells)>;
-void project_cells(const VolumeGeometry& volume, const RayMesh& mesh, const FacetSamples& owned,
-                   const SampleGrid& grid, std::span<const double> until, const TakeCells& take);
+void project_cells(const VolumeGeometry& volume, const LayerRays& rays, const TakeCells& take);
 
 }  // namespace trilens

@@ -11,7 +11,8 @@
 namespace trilens {
 namespace {
 
-constexpr double kOnEdge = 1e-9;  // weights of less lie on a triangle's edge
+constexpr double kOnEdge = 1e-9;          // weights of less lie on a triangle's edge
+constexpr double kSamePlaceShare = 1e-9;  // of the largest coordinate
 
 std::vector<Box> boxes_of(const TriangleScene& scene) {
     std::vector<Box> boxes(scene.size());
@@ -36,6 +37,10 @@ bool is_same_place(const TriangleScene& scene, const Hit& a, const Hit& b) {
 BlendedSurfaces::BlendedSurfaces(TriangleScene triangles, ShadeScene shading)
     : triangles_(std::move(triangles)), shading_(std::move(shading)), tree_(boxes_of(triangles_)) {
     shading_.triangles = &triangles_;
+    for (const Vec3& point : triangles_.points)
+        same_place_ =
+            std::max(same_place_, kSamePlaceShare *
+                                      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}));
 }
 
 void BlendedSurfaces::set_up(const ShadeSurroundings& others) {
@@ -54,12 +59,20 @@ bool BlendedSurfaces::is_seen_by(const Ray& ray, Id triangle) const {
 }
 
 std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const {
+    return crossings_from(-same_place_ / length(ray.direction), ray, until);
+}
+
+std::vector<Hit> BlendedSurfaces::crossings_in_glass(const Ray& ray, double until) const {
+    return crossings_from(same_place_ / length(ray.direction), ray, until);
+}
+
+std::vector<Hit> BlendedSurfaces::crossings_from(double from, const Ray& ray, double until) const {
     std::vector<Hit> hits;
     const double most = until + kDepthTie * until;
     const ShearedRay sheared(ray);
-    tree_.visit(ray, 0, most, [&](Id triangle) {
+    tree_.visit(ray, std::min(from, 0.0), most, [&](Id triangle) {
         if (const auto met = sheared.meet(corners_of(triangles_, triangle)))
-            if (met->t >= 0 && met->t <= most && is_seen_by(ray, triangle))
+            if (met->t >= from && met->t <= most && is_seen_by(ray, triangle))
                 hits.push_back({triangle, met->t, met->barycentric});
         return most;
     });

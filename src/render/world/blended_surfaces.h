@@ -28,6 +28,9 @@ class BlendedSurfaces {
     /// where two of one t meet along an edge, one of them. Surfaces of one side count where that is seen.
     std::vector<Hit> crossings(const Ray& ray, double until) const;
 
+    /// The same of a ray that starts on the surface of glass and runs inside: what lies there is outside.
+    std::vector<Hit> crossings_in_glass(const Ray& ray, double until) const;
+
     /// What comes of light from the segment's end, t = 1, to its start: the surfaces between are what is seen
     /// of them from that end.
     Veil veil(const Ray& segment) const;
@@ -37,10 +40,12 @@ class BlendedSurfaces {
 
   private:
     bool is_seen_by(const Ray& ray, Id triangle) const;
+    std::vector<Hit> crossings_from(double from, const Ray& ray, double until) const;
 
     TriangleScene triangles_;
     ShadeScene shading_;
     BoxTree tree_;
+    double same_place_ = 0;  // as far apart as rounding puts two surfaces at one place
 };
 
 }  // namespace trilens

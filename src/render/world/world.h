@@ -56,6 +56,11 @@ struct World {
     std::vector<std::string> mesh_digests;  // of scene.meshes, once change_scene has asked for them
 };
 
+/// The material of an optic in whose glass light runs; null of kNone: air.
+inline const Material* glass_of(const World& world, Id optic) {
+    return optic == kNone ? nullptr : &world.scene.materials[world.optics[optic].material];
+}
+
 /// An optic's shape with its own normals, whatever else its mesh says of them.
 std::unique_ptr<Surface> make_plain_surface(const Mesh& mesh, const Warn& warn);
 /// The exact surface of an optic, as a world of that scene has it. Throws InputError where its cage cannot be
