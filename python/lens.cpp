@@ -20,8 +20,9 @@ py::dict numbers_dict(const T& of, const std::array<NamedNumber<T>, kCount>& num
     return dict;
 }
 
-py::dict first_order_dict(const LensPrescription& lens, const std::string& line) {
-    return numbers_dict(first_order(lens, line_of(line)), kFirstOrderNumbers);
+py::dict first_order_dict(const LensPrescription& lens, const std::string& line, const std::string& section) {
+    const LensSection plane = require_named<LensSection>("section", section);
+    return numbers_dict(first_order(section_of(lens, plane), line_of(line)), kFirstOrderNumbers);
 }
 
 py::dict seidel_dict(const LensPrescription& lens, double pupil_radius, double field_slope) {
@@ -66,8 +67,10 @@ void bind_lens(py::module_& module) {
         .def_property_readonly(
             "surface_count", [](const LensPrescription& lens) { return lens.rows.size(); },
             "Surfaces, the stop among them.")
-        .def("first_order", first_order_dict, py::kw_only(), py::arg("line") = "d",
-             "Paraxial quantities at a spectral line (\"C\", \"d\", \"F\"), in the file's units:\n"
+        .def("first_order", first_order_dict, py::kw_only(), py::arg("line") = "d", py::arg("section") = "y",
+             "Paraxial quantities at a spectral line (\"C\", \"d\", \"F\"), in the file's units, of the "
+             "section\n"
+             "along \"y\" or \"x\" (they differ where biconics and toric sides are):\n"
              "focal_length, back_focal_length, front_focus, front_principal, back_principal,\n"
              "entrance_pupil, exit_pupil (places from the first or last vertex),\n"
              "entrance_radius, exit_radius, f_number, length, petzval_radius.\n"
@@ -88,6 +91,8 @@ void bind_lens(py::module_& module) {
              "An exact ray through all surfaces, z along the axis from the first vertex: (origin on the last "
              "surface, unit\n"
              "direction), None where it does not come through.")
+        .def_property_readonly("is_round", py::overload_cast<const LensPrescription&>(is_round),
+                               "Whether all its sides are of revolution.")
         .def_property_readonly("is_centred", is_centred, "Whether nothing is tilted or decentred.")
         .def("__repr__", [](const LensPrescription& lens) {
             return "<trilens.Lens \"" + lens.name + "\" " + std::to_string(lens.rows.size()) + " surfaces>";

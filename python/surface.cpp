@@ -221,7 +221,7 @@ void bind_surface_makers(py::module_& module) {
         "radius 0 flat,\n"
         "or a dict with the keys of scenes: radius, aperture, conic, coefficients, normalDepartures, qcon, "
         "qbfs,\n"
-        "normalizationRadius.\n"
+        "normalizationRadius, radiusX, conicX, rotationRadius, profileAlong.\n"
         "hole: radius of a hole along the lens' axis.\n"
         "Raises InputError for sizes that are not positive and for dicts that are no sides.");
 }

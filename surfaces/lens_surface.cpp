@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/description/lens_sag.h"
 #include "surfaces/primitive_shapes.h"
 #include "surfaces/primitives/disk_map.h"
 #include "surfaces/primitives/primitive_bounds.h"
@@ -44,11 +45,12 @@ std::vector<std::array<Id, 4>> lens_corners(bool has_hole) {
     return corners;
 }
 
-/// A cone, or a cylinder, from a rim of the front to one of the back. A hole's is mirrored as the front is:
-/// its outside looks towards the axis.
+/// From a rim of the front straight to one of the back: a cone, or a cylinder, where both are round, and then
+/// their z. A hole's is mirrored as the front is: its outside looks towards the axis.
 struct Edge {
-    double front_radius, back_radius, front_z, back_z;
+    double front_radius, back_radius;
     bool of_hole = false;
+    double front_z = 0, back_z = 0;
 
     Vec2 turned(const Vec2& p) const { return of_hole ? mirrored(p) : p; }
 };
@@ -61,14 +63,14 @@ class LensSurface final : public Surface {
           world_from_local_(world_from_local),
           disks_{DiskMap(lens.front.aperture), DiskMap(lens.back.aperture)},
           rings_{RingMap(lens.hole, lens.front.aperture), RingMap(lens.hole, lens.back.aperture)},
-          edges_{Edge{lens.front.aperture, lens.back.aperture, sag_of_rim(lens.front),
-                      lens.thickness + sag_of_rim(lens.back)}},
+          edges_{Edge{lens.front.aperture, lens.back.aperture}},
           side_faces_(lens.hole > 0 ? RingMap::kFaces : DiskMap::kFaces),
           is_closed_form_(is_conicoid(lens.front) && is_conicoid(lens.back)) {
-        const double s = lens.hole * lens.hole;
-        if (s > 0)
-            edges_.push_back({lens.hole, lens.hole, sag_at(lens.front, s).z,
-                              lens.thickness + sag_at(lens.back, s).z, true});
+        if (lens.hole > 0) edges_.push_back({lens.hole, lens.hole, true});
+        for (Edge& edge : edges_) {
+            edge.front_z = sag_over(lens.front, {edge.front_radius, 0}).z;
+            edge.back_z = lens.thickness + sag_over(lens.back, {edge.back_radius, 0}).z;
+        }
     }
 
     std::size_t face_count() const override { return borders_.size(); }
@@ -116,19 +118,18 @@ class LensSurface final : public Surface {
         if (which == 0)
             for (Vec2* part : {&flat.p, &flat.u, &flat.v, &flat.uu, &flat.uv, &flat.vv})
                 *part = mirrored(*part);
-        const Sag sag = sag_at(side(which), dot(flat.p, flat.p));
-        const double su = 2 * dot(flat.p, flat.u), sv = 2 * dot(flat.p, flat.v);
-        const auto second = [&](const Vec2& a, const Vec2& b, const Vec2& ab, double sa_sb) {
-            return Vec3(ab, sag.by_ss * sa_sb + 2 * sag.by_s * (dot(a, b) + dot(flat.p, ab)));
+        const SideSag sag = sag_over(side(which), flat.p);
+        const auto second = [&](const Vec2& a, const Vec2& b, const Vec2& ab) {
+            return Vec3(ab, sag.bend(a, b) + dot(sag.slope, ab));
         };
         SurfacePoint point;
         point.position = Vec3(flat.p, vertex(which) + sag.z);
-        point.du = Vec3(flat.u, sag.by_s * su);
-        point.dv = Vec3(flat.v, sag.by_s * sv);
-        point.duu = second(flat.u, flat.u, flat.uu, su * su);
-        point.duv = second(flat.u, flat.v, flat.uv, su * sv);
-        point.dvv = second(flat.v, flat.v, flat.vv, sv * sv);
-        point.normal = normalize(Vec3(-2 * sag.by_s * flat.p, 1.0)) * (which == 0 ? -1.0 : 1.0);
+        point.du = Vec3(flat.u, dot(sag.slope, flat.u));
+        point.dv = Vec3(flat.v, dot(sag.slope, flat.v));
+        point.duu = second(flat.u, flat.u, flat.uu);
+        point.duv = second(flat.u, flat.v, flat.uv);
+        point.dvv = second(flat.v, flat.v, flat.vv);
+        point.normal = normalize(Vec3(-sag.slope, 1.0)) * (which == 0 ? -1.0 : 1.0);
         return point;
     }
 
@@ -136,16 +137,35 @@ class LensSurface final : public Surface {
         const double angle = kHalfTurn / 4 * (2 * uv.x - 1), speed = kHalfTurn / 2;
         const Vec2 unturned = quarter_turns({std::cos(angle), std::sin(angle)}, quarter);
         const Vec2 out = edge.turned(unturned), around = speed * edge.turned(quarter_turns(unturned, 1));
-        const double wider = edge.back_radius - edge.front_radius, height = edge.back_z - edge.front_z;
+        const double wider = edge.back_radius - edge.front_radius;
         const double radius = (1 - uv.y) * edge.front_radius + uv.y * edge.back_radius;
+        const RimPoint front = rim_point(0, edge.front_radius, out, around),
+                       back = rim_point(1, edge.back_radius, out, around);
+        const double height = back.z - front.z;
+        const auto between = [&uv](double a, double b) { return (1 - uv.y) * a + uv.y * b; };
         SurfacePoint point;
-        point.position = Vec3(radius * out, (1 - uv.y) * edge.front_z + uv.y * edge.back_z);
-        point.du = Vec3(radius * around, 0);
+        point.position = Vec3(radius * out, between(front.z, back.z));
+        point.du = Vec3(radius * around, between(front.u, back.u));
         point.dv = Vec3(wider * out, height);
-        point.duu = Vec3(-radius * speed * speed * out, 0);
-        point.duv = Vec3(wider * around, 0);
-        point.normal = normalize(Vec3(height * out, -wider)) * (edge.of_hole ? -1.0 : 1.0);
+        point.duu = Vec3(-radius * speed * speed * out, between(front.uu, back.uu));
+        point.duv = Vec3(wider * around, back.u - front.u);
+        if (is_round(lens_.front) && is_round(lens_.back))
+            point.normal = normalize(Vec3(height * out, -wider)) * (edge.of_hole ? -1.0 : 1.0);
+        else
+            point.normal = normalize(cross(point.du, point.dv));
         return point;
+    }
+
+    /// z of a rim, by how far it is turned.
+    struct RimPoint {
+        double z, u, uu;
+    };
+    RimPoint rim_point(Id which, double radius, const Vec2& out, const Vec2& around) const {
+        if (is_round(side(which))) return {vertex(which) + sag_at(side(which), radius * radius).z, 0, 0};
+        const SideSag sag = sag_over(side(which), radius * out);
+        const Vec2 along = radius * around;
+        return {vertex(which) + sag.z, dot(sag.slope, along),
+                sag.bend(along, along) - dot(around, around) * dot(sag.slope, radius * out)};
     }
 
     /// The first hit of those that were looked at.

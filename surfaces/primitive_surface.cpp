@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/description/lens_sag.h"
 #include "base/util/error.h"
 #include "surfaces/lens_surface.h"
 #include "surfaces/primitive_shapes.h"

@@ -53,6 +53,20 @@ std::string first_order_text(const LensPrescription& lens, const FirstOrder& fir
     return text + fmt::format("Petzval radius {:.6g}\n", first.petzval_radius);
 }
 
+/// Null where it gathers nothing along x.
+void add_section_along_x(const LensPrescription& lens, SpectralLine line, Answer& answer) {
+    Json& along_x = answer.fields["first_order_x"];
+    try {
+        const FirstOrder first = first_order(section_of(lens, LensSection::kX), line);
+        along_x = numbers_json(first, kFirstOrderNumbers);
+        answer.text += fmt::format("along x: focal length {:.6g}, back focal length {:.6g}\n",
+                                   first.focal_length, first.back_focal_length);
+    } catch (const InputError&) {
+        along_x = Json();
+        answer.text += "along x: no focal length\n";
+    }
+}
+
 /// As transverse aberrations in the paraxial focus, the form of published tables.
 std::string seidel_text(const SeidelSums& seidel) {
     const double scale = 1 / (2 * seidel.image_slope);
@@ -70,6 +84,8 @@ Answer run(const LensOptions& options, Console& console) {
     const LensPrescription lens = load_lens(options.lens, options.glasses);
     if (!is_centred(lens))
         console.warn("first order and Seidel's sums take its surfaces as if none were tilted or decentred");
+    if (!is_round(lens))
+        console.warn("first order, Seidel's sums and the pupil are those of its section along y");
     const SpectralLine line = *find_named<SpectralLine>(options.line);
     const FirstOrder first = first_order(lens, line);
     Answer answer;
@@ -77,6 +93,7 @@ Answer run(const LensOptions& options, Console& console) {
     answer.fields["line"] = options.line;
     answer.fields["first_order"] = numbers_json(first, kFirstOrderNumbers);
     answer.text = first_order_text(lens, first);
+    if (!is_round(lens)) add_section_along_x(lens, line, answer);
 
     const double pupil = options.pupil > 0 ? options.pupil : first.entrance_radius;
     if (!(pupil > 0) || !std::isfinite(pupil)) {

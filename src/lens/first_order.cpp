@@ -8,8 +8,9 @@
 namespace trilens {
 namespace {
 
-/// Curvature at the vertex: the conicoid's with the coefficients of r^2.
-double vertex_curvature(const LensSide& side) {
+/// Curvature at the vertex, along y: the conicoid's with the coefficients of r^2.
+double vertex_curvature(const LensSide& of) {
+    const LensSide side = section_of(of, LensSection::kY);
     return side.curvature + 2 * (side.coefficients[0] + side.normal_departures[0]);
 }
 
@@ -22,7 +23,8 @@ std::vector<double> signed_indices(const std::vector<LensMedium>& media, Spectra
 
 /// The term of r^4 beyond that of the sphere with the vertex' curvature. 1 / sqrt(1 - c^2 r^2) is 1 + c^2 r^2
 /// / 2 so far.
-double figuring(const LensSide& side) {
+double figuring(const LensSide& of) {
+    const LensSide side = section_of(of, LensSection::kY);
     const double c = side.curvature, at_vertex = vertex_curvature(side);
     const double along_normal = side.normal_departures[1] + side.normal_departures[0] * c * c / 2;
     return (1 + side.conic) * c * c * c / 8 + side.coefficients[1] + along_normal -

@@ -1,6 +1,7 @@
 // Paraxial optics of a lens, and its primary aberrations by Seidel's sums (Welford, Aberrations of Optical
 // Systems, 1986, chapters 6 and 8). Objects are at infinity, air is on both sides. Mirrors turn the index'
-// sign; tilts and decentres are not looked at, as if the lens were unfolded.
+// sign; tilts and decentres are not looked at, as if the lens were unfolded. Of biconics and toric sides the
+// section in the plane of y is taken, as if it were turned about the axis; section_of() gives that of x.
 #pragma once
 
 #include <array>

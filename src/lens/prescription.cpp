@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "base/description/lens_sag.h"
 #include "base/util/error.h"
 
 namespace trilens {
@@ -68,6 +70,17 @@ bool is_centred(const LensPrescription& lens) {
            });
 }
 
+bool is_round(const LensPrescription& lens) {
+    return std::all_of(lens.rows.begin(), lens.rows.end(),
+                       [](const LensRow& row) { return is_round(row.side); });
+}
+
+LensPrescription section_of(const LensPrescription& lens, LensSection section) {
+    LensPrescription cut = lens;
+    for (LensRow& row : cut.rows) row.side = section_of(row.side, section);
+    return cut;
+}
+
 std::vector<LensMedium> lens_media(const LensPrescription& lens) {
     std::vector<LensMedium> media{LensMedium()};
     for (const LensRow& row : lens.rows) {
@@ -92,8 +105,9 @@ namespace {
 /// Whether its numbers are finite.
 bool is_finite(const LensRow& row) {
     bool finite = true;
-    for (const double number : {row.side.curvature, row.side.conic, row.side.aperture, row.thickness,
-                                row.glass.index, row.glass.abbe, row.hole})
+    for (const double number :
+         {row.side.curvature, row.side.conic, row.side.aperture, row.side.across_curvature,
+          row.side.across_conic, row.thickness, row.glass.index, row.glass.abbe, row.hole})
         finite = finite && std::isfinite(number);
     for (const LensPose* pose : {&row.before, &row.after})
         finite = finite && std::isfinite(dot(pose->shift, pose->shift)) &&
@@ -149,16 +163,25 @@ namespace {
 /// How thick a mirror is behind what it reflects with, in radii.
 constexpr double kMirrorBlank = 0.25;
 
+/// How far it reaches along the axis, or against it (sense -1), from its vertex.
+double reach_along(const LensSide& side, double sense) {
+    constexpr int kPlaces = 128, kDirections = 32;
+    double reach = 0;
+    for (int k = 0; k <= (is_round(side) ? 0 : kDirections); ++k) {
+        const double turn = std::numbers::pi / 2 * k / kDirections;
+        for (int i = 0; i <= kPlaces; ++i) {
+            const double r = side.aperture * i / kPlaces;
+            reach = std::max(reach, sense * sag_over(side, r * Vec2(std::cos(turn), std::sin(turn))).z);
+        }
+    }
+    return reach;
+}
+
 /// A body whose side of that row reflects; light comes along the row's axis, or against it.
 LensElement mirror_body(const LensPrescription& lens, std::size_t index, const LensMedium& before) {
     const LensRow& row = lens.rows[index];
     if (!before.glass.is_air()) fail(lens, row, "a mirror on glass is traced, but no body is made of it");
-    constexpr int kPlaces = 128;
-    double reach = 0;
-    for (int i = 0; i <= kPlaces; ++i) {
-        const double r = row.side.aperture * i / kPlaces;
-        reach = std::max(reach, before.sense * sag_at(row.side, r * r).z);
-    }
+    const double reach = reach_along(row.side, before.sense);
     LensSide flat;
     flat.aperture = row.side.aperture;
     LensElement body{

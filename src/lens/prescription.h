@@ -88,6 +88,12 @@ std::vector<LensPose> lens_poses(const LensPrescription& lens);
 /// Whether nothing is tilted or decentred.
 bool is_centred(const LensPrescription& lens);
 
+/// Whether all sides are of revolution.
+bool is_round(const LensPrescription& lens);
+
+/// The lens whose sides are of revolution and have the profiles that the plane cuts out of this one's.
+LensPrescription section_of(const LensPrescription& lens, LensSection section);
+
 /// What light goes through, and whether along the axis (1) or against it (-1).
 struct LensMedium {
     Glass glass = {};

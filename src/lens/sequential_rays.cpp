@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/description/lens_sag.h"
 #include "base/util/error.h"
 
 namespace trilens {
@@ -15,12 +16,9 @@ struct Gap {
 };
 std::optional<Gap> gap_at(const LensSide& side, const Ray& ray, double t) {
     const Vec3 p = ray.origin + t * ray.direction;
-    const double s = p.x * p.x + p.y * p.y, c = side.curvature;
-    if (!(1 - (1 + side.conic) * c * c * s > 0)) return std::nullopt;
-    if (departs_along_normal(side) && !(c * c * s < 1)) return std::nullopt;
-    const Sag sag = sag_at(side, s);
-    const double rise = 2 * sag.by_s * (p.x * ray.direction.x + p.y * ray.direction.y);
-    return Gap{sag.z - p.z, rise - ray.direction.z};
+    const SideSag sag = sag_over(side, Vec2(p));
+    if (!std::isfinite(sag.z) || !std::isfinite(dot(sag.slope, sag.slope))) return std::nullopt;
+    return Gap{sag.z - p.z, dot(sag.slope, Vec2(ray.direction)) - ray.direction.z};
 }
 
 /// Newton's method from the vertex' plane; the origin is the vertex.
@@ -56,8 +54,7 @@ std::optional<Ray> pass(const LensRow& row, const Ray& ray, double eta, Aperture
     const double s = point.x * point.x + point.y * point.y, rim = row.side.aperture;
     if (apertures == ApertureRule::kGiven && ((rim > 0 && s > rim * rim) || s < row.hole * row.hole))
         return std::nullopt;
-    const double slope = 2 * sag_at(row.side, s).by_s;
-    const Vec3 normal = normalize(Vec3(-slope * point.x, -slope * point.y, 1));
+    const Vec3 normal = normalize(Vec3(-sag_over(row.side, Vec2(point)).slope, 1));
     if (row.mirror) return Ray{point, ray.direction - 2 * dot(ray.direction, normal) * normal};
     const std::optional<Vec3> direction = refracted_through(ray.direction, normal, eta);
     if (!direction) return std::nullopt;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "base/description/lens_sag.h"
 #include "scene/data/check_scene.h"
 
 namespace trilens {
@@ -41,13 +43,18 @@ void grow_by(Box& box, const ConePrimitive& cone, const Primitive& at) {
 
 /// Rings of both sides, from the vertex to the rim.
 void grow_by(Box& box, const LensPrimitive& lens, const Primitive& at) {
-    constexpr int kRings = 64;
+    constexpr int kRings = 64, kTurns = 256;
     for (const bool is_front : {true, false}) {
         const LensSide& side = is_front ? lens.front : lens.back;
+        const auto z = [&](const Vec2& p) { return sag_over(side, p).z + (is_front ? 0 : lens.thickness); };
         for (int i = 0; i <= kRings; ++i) {
             const double r = side.aperture * i / kRings;
-            const double z = sag_at(side, r * r).z + (is_front ? 0 : lens.thickness);
-            grow_by_disk(box, at.center + z * at.axis, at.axis, r);
+            if (is_round(side)) grow_by_disk(box, at.center + z({r, 0}) * at.axis, at.axis, r);
+            for (int k = 0; k < (is_round(side) ? 0 : kTurns); ++k) {
+                const double turn = 2 * std::numbers::pi * k / kTurns;
+                const Vec2 p = r * Vec2(std::cos(turn), std::sin(turn));
+                box.include(at.center + p.x * at.tangent + p.y * cross(at.axis, at.tangent) + z(p) * at.axis);
+            }
         }
     }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/description/lens_sag.h"
+
 namespace trilens {
 namespace {
 
@@ -145,6 +147,30 @@ Slopes side_slopes(const LensSide& side, const Slopes& p) {
     return s;
 }
 
+/// A side of another form, by the chain rule with its slopes along x and y.
+Slopes uneven_side_slopes(const LensSide& side, const Slopes& p) {
+    const SagBounds f = sag_bounds(side);
+    Slopes s;
+    s.u = std::hypot(p.u, f.first * p.u);
+    s.v = std::hypot(p.v, f.first * p.v);
+    s.uu = std::hypot(p.uu, f.second * p.u * p.u + f.first * p.uu);
+    s.uv = std::hypot(p.uv, f.second * p.u * p.v + f.first * p.uv);
+    s.vv = std::hypot(p.vv, f.second * p.v * p.v + f.first * p.vv);
+    const double uuu = f.third * p.u * p.u * p.u + 3 * f.second * p.u * p.uu + f.first * p.uuu,
+                 uuv = f.third * p.u * p.u * p.v + f.second * (p.uu * p.v + 2 * p.u * p.uv) + f.first * p.uuv,
+                 uvv = f.third * p.u * p.v * p.v + f.second * (p.vv * p.u + 2 * p.v * p.uv) + f.first * p.uvv,
+                 vvv = f.third * p.v * p.v * p.v + 3 * f.second * p.v * p.vv + f.first * p.vvv;
+    s.uuu = std::hypot(p.uuu, uuu);
+    s.uuv = std::hypot(p.uuv, uuv);
+    s.uvv = std::hypot(p.uvv, uvv);
+    s.vvv = std::hypot(p.vvv, vvv);
+
+    // The normal is along (-slope, 1), as of round sides.
+    s.normal_u = f.second * p.u;
+    s.normal_v = f.second * p.v;
+    return s;
+}
+
 /// Between rims of such radii.
 Slopes edge_slopes(double front, double back, double height) {
     Slopes s;
@@ -158,14 +184,57 @@ Slopes edge_slopes(double front, double back, double height) {
     return s;
 }
 
+/// How fast a rim rises and falls: z by the angle, its first three derivatives.
+SagBounds rim_bounds(const LensSide& side, double radius) {
+    if (is_round(side)) return {};
+    const SagBounds f = sag_bounds(side);
+    const double r = radius, first = f.first * r;
+    return {0, first, f.second * r * r + first, f.third * r * r * r + 3 * f.second * r * r + first};
+}
+
+/// The least distance along the axis between rims, over all angles; not positive: none is known.
+double least_height(const LensPrimitive& lens, double front, double back) {
+    constexpr int kPlaces = 512;
+    const double step = 2 * kPi / kPlaces;
+    double least = lens.thickness + sag_over(lens.back, {back, 0}).z - sag_over(lens.front, {front, 0}).z;
+    for (int i = 0; i < kPlaces; ++i) {
+        const Vec2 out(std::cos(step * i), std::sin(step * i));
+        least = std::min(
+            least, lens.thickness + sag_over(lens.back, back * out).z - sag_over(lens.front, front * out).z);
+    }
+    return least - step / 2 * (rim_bounds(lens.front, front).first + rim_bounds(lens.back, back).first);
+}
+
+/// Between rims of which one is not round: the position is ((1 - v) front + v back)(cos, sin) and as much of
+/// their z.
+Slopes uneven_edge_slopes(const LensPrimitive& lens, double front, double back) {
+    const SagBounds a = rim_bounds(lens.front, front), b = rim_bounds(lens.back, back);
+    const double most = std::max(front, back), wider = std::fabs(back - front), k = kQuarter;
+    const double height = lens.thickness + sag_bounds(lens.front).z + sag_bounds(lens.back).z;
+    Slopes s;
+    s.u = k * std::hypot(most, std::max(a.first, b.first));
+    s.uu = k * k * std::hypot(most, std::max(a.second, b.second));
+    s.uuu = k * k * k * std::hypot(most, std::max(a.third, b.third));
+    s.v = std::hypot(wider, height);
+    s.uv = k * std::hypot(wider, a.first + b.first);
+    s.uuv = k * k * std::hypot(wider, a.second + b.second);
+    // The normal is along du x dv, whose part away from the axis is at least radius k height.
+    const double long_enough = std::min(front, back) * k * least_height(lens, front, back);
+    const double some = long_enough > 0 ? 1 / long_enough : 1e300;
+    s.normal_u = std::min(some * (s.uu * s.v + s.u * s.uv), 1e300);
+    s.normal_v = std::min(some * s.uv * s.v, 1e300);
+    return s;
+}
+
 /// Faces as make_lens_surface numbers them: those of each side, then the quarters of the edge, and of the
 /// hole.
 Slopes slopes_of(const LensPrimitive& lens, Id face) {
     const Id of_side = lens.hole > 0 ? 4 : 5;
     if (face < 2 * of_side) {
         const LensSide& side = face < of_side ? lens.front : lens.back;
-        return side_slopes(side, lens.hole > 0 ? ring_slopes(lens.hole, side.aperture)
-                                               : disk_slopes(side.aperture, face % of_side == 4));
+        const Slopes flat = lens.hole > 0 ? ring_slopes(lens.hole, side.aperture)
+                                          : disk_slopes(side.aperture, face % of_side == 4);
+        return is_round(side) ? side_slopes(side, flat) : uneven_side_slopes(side, flat);
     }
     const auto height = [&](double front, double back) {
         return lens.thickness + sag_at(lens.back, back * back).z - sag_at(lens.front, front * front).z;
@@ -173,6 +242,7 @@ Slopes slopes_of(const LensPrimitive& lens, Id face) {
     const bool is_hole = face >= 2 * of_side + 4;
     const double front = is_hole ? lens.hole : lens.front.aperture,
                  back = is_hole ? lens.hole : lens.back.aperture;
+    if (!is_round(lens.front) || !is_round(lens.back)) return uneven_edge_slopes(lens, front, back);
     return edge_slopes(front, back, height(front, back));
 }
 

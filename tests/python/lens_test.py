@@ -136,3 +136,27 @@ def test_a_lens_primitive_has_a_hole():
     assert ring.face_count == 16
     with pytest.raises(trilens.InputError, match="hole is not smaller"):
         trilens.primitive_surface("lens", hole=1)
+
+
+def test_an_anamorphic_lens_has_two_focal_lengths(command, tmp_path):
+    file = tmp_path / "cylinder.seq"
+    file.write_text("RDM\nSO 0 1E13\nS 60 4 NBK7\n CIR 8\n YTO; RDX 30\nS 0 90\n CIR 8\nSI 0 0\n")
+    lens = trilens.load_lens(file)
+    assert not lens.is_round and trilens.load_lens(TRIPLET).is_round
+    assert lens.first_order() == lens.first_order(section="y")
+    assert lens.first_order(section="y")["focal_length"] == pytest.approx(60 / 0.5168, rel=1e-12)
+    assert lens.first_order(section="x")["focal_length"] == pytest.approx(30 / 0.5168, rel=1e-12)
+    _, answer = command("lens", file)
+    assert answer["first_order_x"] == lens.first_order(section="x")
+    assert any("section along y" in warning for warning in answer["warnings"])
+    flat = tmp_path / "flat.seq"
+    flat.write_text(file.read_text().replace("RDX 30", "RDX 0"))
+    _, answer = command("lens", flat)
+    assert answer["first_order_x"] is None
+    with pytest.raises(trilens.InputError, match="no focal length"):
+        trilens.load_lens(flat).first_order(section="x")
+    side = {"aperture": 1, "radius": 3, "rotationRadius": -4, "profileAlong": "x"}
+    bowl = trilens.primitive_surface("lens", axis=(0, 0, 1), front=side, back=(0, 1), thickness=1)
+    assert bowl.face_count == 14
+    with pytest.raises(trilens.InputError, match="radiusX"):
+        trilens.primitive_surface("lens", front={"aperture": 1, "conicX": 2})

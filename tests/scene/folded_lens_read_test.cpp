@@ -274,7 +274,9 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
     CHECK(code_v("ADE 10\nBDE 3\nBEN") == "a.seq: line 6: BEN is read with one of ADE and BDE alone");
     CHECK(code_v("S 0 1\nADE 10; BEN") == "a.seq: line 5: BEN of a surface that is no mirror");
     CHECK(code_v("XDE 1..2") == "a.seq: line 4: XDE needs a number, not \"1..2\"");
-    CHECK(code_v("YTO") == "a.seq: line 4: YTO: surfaces of revolution that refract or reflect are read");
+    CHECK(
+        code_v("CYL") ==
+        "a.seq: line 4: CYL: conicoids, even aspheres, toric (YTO, XTO) and biconic (AAS) surfaces are read");
     CHECK(code_v("CIR OBS 2") ==
           "a.seq: line 4: CIR OBS: rims (CIR, CLR, EDG) and holes (HOL) are read, obscurations are not");
     CHECK(code_v("CIR Z2 5").starts_with("a.seq: line 4: CIR Z2: "));

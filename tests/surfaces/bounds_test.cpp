@@ -111,13 +111,22 @@ const LensPrimitive kLens{0.9,
                           {.curvature = 0.4, .conic = -2.2, .aperture = 1.3},
                           {.curvature = -0.3, .conic = 0.6, .coefficients = {0.01, -0.02, 0.004}}};
 
-const std::array<PrimitiveKind, 7> kBoundedKinds = {SpherePrimitive{1.7},
+/// A biconic saddle before an aspheric toric side, and two cylinders that cross, with a hole.
+const LensPrimitive kAnamorphic{1,
+                                {0.4, -0.5, {}, 1.2, {}, SideForm::kBiconic, -0.2, 1.5},
+                                {-0.3, 0.4, {0.01, -0.02}, 0.9, {}, SideForm::kToricX, -0.5}};
+const LensPrimitive kCylinders{
+    0.9, {0.5, 0, {}, 1.1, {}, SideForm::kToricY}, {-0.5, 0, {}, 1.1, {}, SideForm::kToricX}, 0.3};
+
+const std::array<PrimitiveKind, 9> kBoundedKinds = {SpherePrimitive{1.7},
                                                     ParaboloidPrimitive{1.7, 0.6},
                                                     CylinderPrimitive{1.7, 4},
                                                     ConePrimitive{1.7, 1.1},
                                                     PlanePrimitive{{3, 0.7}},
                                                     kLens,
-                                                    kHoled};
+                                                    kHoled,
+                                                    kAnamorphic,
+                                                    kCylinders};
 
 /// Patches of several degrees and weights; the k-th of the first four has its k-th side in one point.
 std::vector<RationalPatch> rational_patches() {
@@ -215,7 +224,7 @@ TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") 
     for (const PrimitiveKind& kind : kBoundedKinds)
         surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(kind)));
     surfaces.emplace_back("patches", make_patch_surface(rational_patches(), "patches"));
-    REQUIRE(surfaces.size() == 12);
+    REQUIRE(surfaces.size() == 14);
 
     Boxes boxes(77);
     for (const auto& [name, surface] : surfaces) {

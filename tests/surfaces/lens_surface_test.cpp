@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/description/lens_sag.h"
 #include "base/util/error.h"
 #include "support/draw.h"
 #include "support/test.h"
@@ -42,20 +43,37 @@ LensPrimitive holed_asphere() {
     return lens;
 }
 
-double sag(const LensSide& side, double r) {
-    return sag_at(side, r * r).z;
+/// A biconic saddle before a toric side that is an asphere along x, with rims of other sizes; and two
+/// cylinders that cross, with a hole.
+std::vector<LensPrimitive> anamorphic_lenses() {
+    LensSide biconic{0.4, -0.5, {}, 1.2}, toric{-0.3, 0.4, {0.01, -0.02}, 0.9}, along{0.5, 0, {}, 1.1};
+    biconic.form = SideForm::kBiconic;
+    biconic.across_curvature = -0.2;
+    biconic.across_conic = 1.5;
+    toric.form = SideForm::kToricX;
+    toric.across_curvature = -0.5;
+    along.form = SideForm::kToricY;
+    LensSide across = along;
+    across.form = SideForm::kToricX;
+    across.curvature = -0.5;
+    return {lens_of(1, biconic, toric), {0.9, along, across, 0.3}};
+}
+
+double sag(const LensSide& side, const Vec2& p) {
+    return sag_over(side, p).z;
 }
 
 /// By the solid's own definition: between the sides, and within the edge.
 bool is_in_solid(const LensPrimitive& lens, const Vec3& p) {
     const double r = std::hypot(p.x, p.y);
-    const double low = sag(lens.front, lens.front.aperture),
-                 high = lens.thickness + sag(lens.back, lens.back.aperture);
+    const Vec2 across(p), out = across / r;
+    const double low = sag(lens.front, lens.front.aperture * out),
+                 high = lens.thickness + sag(lens.back, lens.back.aperture * out);
     const double share = (r - lens.front.aperture) / (lens.back.aperture - lens.front.aperture);
     const double edge = low + share * (high - low);  // z of the edge at r
     if (r > std::max(lens.front.aperture, lens.back.aperture) || r < lens.hole) return false;
-    const double before = r <= lens.front.aperture ? sag(lens.front, r) : edge;
-    const double behind = r <= lens.back.aperture ? lens.thickness + sag(lens.back, r) : edge;
+    const double before = r <= lens.front.aperture ? sag(lens.front, across) : edge;
+    const double behind = r <= lens.back.aperture ? lens.thickness + sag(lens.back, across) : edge;
     return p.z > before && p.z < behind;
 }
 
@@ -86,6 +104,7 @@ TEST_CASE("points of lenses lie on sides and edge, with normals out of the glass
     std::vector<LensPrimitive> lenses = conicoid_lenses();
     lenses.push_back(aspheric_lens());
     lenses.push_back(holed_asphere());
+    for (const LensPrimitive& lens : anamorphic_lenses()) lenses.push_back(lens);
     Draw draw(3);
     for (const LensPrimitive& lens : lenses) {
         const auto surface = surface_of(lens);
@@ -97,10 +116,9 @@ TEST_CASE("points of lenses lie on sides and edge, with normals out of the glass
                 const double u = draw.uniform(0.01, 0.99), v = draw.uniform(0.01, 0.99);
                 const SurfacePoint point = surface->eval(face, {u, v});
                 const Vec3& p = point.position;
-                const double r = std::hypot(p.x, p.y);
-                if (face < of_side) CHECK(std::fabs(p.z - sag(lens.front, r)) < 1e-14);
+                if (face < of_side) CHECK(std::fabs(p.z - sag(lens.front, Vec2(p))) < 1e-14);
                 if (face >= of_side && face < 2 * of_side)
-                    CHECK(std::fabs(p.z - lens.thickness - sag(lens.back, r)) < 1e-14);
+                    CHECK(std::fabs(p.z - lens.thickness - sag(lens.back, Vec2(p))) < 1e-14);
                 CHECK(std::fabs(length(point.normal) - 1) < 1e-14);
                 CHECK(dot(point.normal, cross(point.du, point.dv)) > 0);
                 CHECK(is_in_solid(lens, p - 1e-6 * point.normal));
@@ -126,6 +144,7 @@ TEST_CASE("a lens' grid is closed: every edge of facets is that of two, with one
     std::vector<LensPrimitive> lenses = conicoid_lenses();
     lenses.push_back(aspheric_lens());
     lenses.push_back(holed_asphere());
+    for (const LensPrimitive& lens : anamorphic_lenses()) lenses.push_back(lens);
     for (const LensPrimitive& lens : lenses) {
         const SurfaceGrid grid = make_grid(*surface_of(lens), 4);
         std::vector<std::pair<Id, Id>> edges;
@@ -196,7 +215,7 @@ TEST_CASE("no ray slips between a lens' sides and its edge", "[surfaces][law]") 
             const LensSide& side = of_front ? lens.front : lens.back;
             const double turn = k % 3 == 0 ? 0.7853981633974483 * (k % 8) : draw.uniform(0, 6.3);
             const Vec3 rim(side.aperture * std::cos(turn), side.aperture * std::sin(turn),
-                           (of_front ? 0 : lens.thickness) + sag(side, side.aperture));
+                           (of_front ? 0 : lens.thickness) + sag(side, {side.aperture, 0}));
             const Vec3 middle(0, 0, 0.5 * lens.thickness);
             CHECK(surface->intersect({middle, rim - middle}, 0));
         }
@@ -206,6 +225,7 @@ TEST_CASE("no ray slips between a lens' sides and its edge", "[surfaces][law]") 
 TEST_CASE("aspheric lenses have no closed form, and lenses that cannot be made are refused",
           "[surfaces][bad-input]") {
     CHECK_FALSE(surface_of(aspheric_lens())->has_closed_form());
+    for (const LensPrimitive& lens : anamorphic_lenses()) CHECK_FALSE(surface_of(lens)->has_closed_form());
     const auto refused = [](const LensPrimitive& lens, const std::string& why) {
         try {
             surface_of(lens);

@@ -1,17 +1,27 @@
-// Sides of lenses: conicoids and even aspheres about an axis, as optical prescriptions write them.
+// Sides of lenses: conicoids and even aspheres about an axis, biconics and toric sides across it, as optical
+// prescriptions write them.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+
+#include "base/util/names.h"
 
 namespace trilens {
 
 /// How many coefficients an even asphere has: of r^2, r^4, ... r^16.
 inline constexpr std::size_t kAsphereTerms = 8;
 
-/// z over r from the axis: c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a1 r^2 + a2 r^4 + ... + a8 r^16
+/// How a side comes of its profile, z over the distance from the axis. kRound: turned about the axis.
+/// kBiconic: a conic section along y, and another one along x. kToricY, kToricX: the profile lies along that
+/// axis of the frame, and is turned about a line parallel to it, across the side's own axis.
+enum class SideForm : std::uint8_t { kRound, kBiconic, kToricY, kToricX };
+
+/// The profile: z over r from the axis: c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a1 r^2 + a2 r^4 + ... + a8
+/// r^16
 /// + (b1 r^2 + b2 r^4 + ... + b8 r^16) / sqrt(1 - c^2 r^2), up to the aperture.
 struct LensSide {
     double curvature = 0;  // c = 1 / radius; positive: the centre lies farther along the axis
@@ -20,22 +30,56 @@ struct LensSide {
     double aperture = 1;  // radius of the rim
     /// b, departures along the normal of the sphere of that curvature, as Forbes' Qbfs has them.
     std::array<double, kAsphereTerms> normal_departures{};
+    /// Of forms that are not round: without departures along normals, a biconic without coefficients too.
+    SideForm form = SideForm::kRound;
+    double across_curvature = 0;  // of a biconic along x; of a toric side 1 / the radius that it is turned at
+    double across_conic = 0;      // of a biconic along x
 };
+
+inline bool is_round(const LensSide& side) {
+    return side.form == SideForm::kRound;
+}
 
 inline bool departs_along_normal(const LensSide& side) {
     return std::any_of(side.normal_departures.begin(), side.normal_departures.end(),
                        [](double b) { return b != 0; });
 }
 
-/// Whether no coefficient adds to the conicoid.
+inline bool has_coefficients(const LensSide& side) {
+    return std::any_of(side.coefficients.begin(), side.coefficients.end(), [](double a) { return a != 0; });
+}
+
+/// Whether nothing adds to a conicoid of revolution.
 inline bool is_conicoid(const LensSide& side) {
-    return !departs_along_normal(side) &&
-           std::all_of(side.coefficients.begin(), side.coefficients.end(), [](double a) { return a == 0; });
+    return is_round(side) && !departs_along_normal(side) && !has_coefficients(side);
+}
+
+/// Planes through the axis: that of x, and that of y, in which fields lie.
+enum class LensSection : std::uint8_t { kY, kX };
+
+template <>
+struct EnumNames<LensSection> {
+    static constexpr std::array kTable{NamedValue<LensSection>{LensSection::kY, "y"},
+                                       NamedValue<LensSection>{LensSection::kX, "x"}};
+};
+
+/// The round side whose profile is what the plane cuts out of this one.
+inline LensSide section_of(const LensSide& side, LensSection section) {
+    LensSide cut = side;
+    cut.form = SideForm::kRound;
+    cut.across_curvature = cut.across_conic = 0;
+    const LensSection profile = side.form == SideForm::kToricX ? LensSection::kX : LensSection::kY;
+    if (is_round(side) || section == profile) return cut;
+    cut.curvature = side.across_curvature;
+    cut.conic = side.across_conic;
+    cut.coefficients = {};
+    return cut;
 }
 
 /// The shape `factor` times as large, up to the same aperture.
 inline LensSide with_scaled_shape(LensSide side, double factor) {
     side.curvature /= factor;
+    side.across_curvature /= factor;
     double unit = factor;
     for (std::size_t i = 0; i < kAsphereTerms; ++i) {
         side.coefficients[i] /= unit;
@@ -45,8 +89,8 @@ inline LensSide with_scaled_shape(LensSide side, double factor) {
     return side;
 }
 
-/// The least 1 - (1 + k) c^2 r^2 up to the aperture: 0 where the conicoid turns back; of the sphere, too,
-/// where the side departs along its normals.
+/// Of the profile, the least 1 - (1 + k) c^2 r^2 up to the aperture: 0 where the conicoid turns back; of the
+/// sphere, too, where the side departs along its normals.
 inline double rim_room(const LensSide& side) {
     const double r = side.aperture, c = side.curvature;
     const double of_conicoid = std::min(1.0, 1 - (1 + side.conic) * c * c * r * r);
@@ -74,7 +118,7 @@ inline Sag polynomial_at(const std::array<double, kAsphereTerms>& terms, double 
     return sum;
 }
 
-/// Of a side whose rim_room is positive; s up to the aperture's square.
+/// Of the profile, where rim_room is positive; s up to the aperture's square. sag_over() has all sides.
 inline Sag sag_at(const LensSide& side, double s) {
     const double c = side.curvature, k = (1 + side.conic) * c * c;
     const double w = 1 - k * s, root = std::sqrt(w);
@@ -92,11 +136,6 @@ inline Sag sag_at(const LensSide& side, double s) {
     return sag;
 }
 
-/// z at the aperture; as sag_at.
-inline double sag_of_rim(const LensSide& side) {
-    return sag_at(side, side.aperture * side.aperture).z;
-}
-
 /// How large a polynomial of s without a constant and its first three derivatives are at most, up to s.
 inline std::array<double, 4> largest_derivatives(const std::array<double, kAsphereTerms>& terms, double s) {
     std::array<double, 4> most{};
@@ -111,7 +150,7 @@ inline std::array<double, 4> largest_derivatives(const std::array<double, kAsphe
     return most;
 }
 
-/// How large the first three derivatives of z by s are at most, up to the aperture.
+/// How large the first three derivatives of the profile's z by s are at most, up to the aperture.
 inline std::array<double, 3> largest_slopes(const LensSide& side) {
     const double c = std::fabs(side.curvature), k = std::fabs(1 + side.conic) * c * c;
     const double w = rim_room(side), root = std::sqrt(w), s = side.aperture * side.aperture;
@@ -127,34 +166,6 @@ inline std::array<double, 3> largest_slopes(const LensSide& side) {
     most[1] += p[2] * g + 2 * p[1] * g1 + p[0] * g2;
     most[2] += p[3] * g + 3 * p[2] * g1 + 3 * p[1] * g2 + p[0] * g3;
     return most;
-}
-
-/// What a lens of two sides at such a distance, with a round hole along its axis, cannot be; null: it can be
-/// made. Where its sides come near each other between 128 places it is not seen.
-inline const char* lens_fault(const LensSide& front, const LensSide& back, double thickness,
-                              double hole = 0) {
-    if (!(hole >= 0 && hole < std::min(front.aperture, back.aperture)))
-        return "its hole is not smaller than its apertures";
-    for (const LensSide* side : {&front, &back}) {
-        if (!(rim_room(*side) >= kLeastRimRoom)) return "its aperture reaches to where the side turns back";
-        if (!std::isfinite(sag_of_rim(*side))) return "its side is not finite";
-    }
-    const double front_rim = sag_of_rim(front), back_rim = thickness + sag_of_rim(back);
-    if (!(front_rim < back_rim))
-        return "its rims have no edge between them: the sides meet within the aperture";
-    constexpr int kPlaces = 128;
-    const double inner = std::min(front.aperture, back.aperture);
-    const double outer = std::max(front.aperture, back.aperture);
-    for (int i = 0; i < kPlaces; ++i) {
-        const double r = hole + (outer - hole) * i / kPlaces,
-                     along = (r - front.aperture) / (back.aperture - front.aperture);
-        const double edge = front_rim + along * (back_rim - front_rim);
-        const double before = r <= front.aperture ? sag_at(front, r * r).z : edge;
-        const double behind = r <= back.aperture ? thickness + sag_at(back, r * r).z : edge;
-        if (!(before < behind))
-            return r <= inner ? "its sides cross within the aperture" : "its edge cuts through a side";
-    }
-    return nullptr;
 }
 
 }  // namespace trilens

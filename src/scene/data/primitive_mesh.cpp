@@ -4,6 +4,8 @@
 #include <functional>
 #include <numbers>
 
+#include "base/description/lens_sag.h"
+
 namespace trilens {
 namespace {
 
@@ -57,11 +59,13 @@ void add_patch(const Patch& patch, int columns, int rows, const Poles& poles, Po
 struct AxisFrame {
     explicit AxisFrame(const ObjectPrimitive& p)
         : axis(p.axis), tangent(p.tangent), side(cross(p.axis, p.tangent)) {}
-    Vec3 around(double u) const {
+    /// From the tangent towards the side, of length 1.
+    static Vec2 turned(double u) {
         // Where the circle closes it is the same point to the last bit.
         const double angle = 2 * std::numbers::pi * (u < 1 ? u : u - 1);
-        return std::cos(angle) * tangent + std::sin(angle) * side;
+        return {std::cos(angle), std::sin(angle)};
     }
+    Vec3 around(double u) const { return turned(u).x * tangent + turned(u).y * side; }
     Vec3 axis, tangent, side;
 };
 
@@ -145,40 +149,39 @@ void add_shape(const PlanePrimitive& plane, const ObjectPrimitive& p, PolygonMes
 
 void add_shape(const LensPrimitive& lens, const ObjectPrimitive& p, PolygonMesh& mesh) {
     const AxisFrame frame(p);
-    struct Ring {
-        double radius, z;
-    };
-    const auto on = [&](const Ring& ring, const Vec3& out) {
-        return p.center + ring.radius * out + ring.z * frame.axis;
+    const auto across = [&](const Vec2& q) { return q.x * frame.tangent + q.y * frame.side; };
+    const auto on = [&](const LensSide& side, const Vec2& q) {
+        const double vertex = &side == &lens.front ? 0 : lens.thickness;
+        return p.center + across(q) + (vertex + sag_over(side, q).z) * frame.axis;
     };
     // Fronts look out of the glass: the front side's against the axis, so it is turned the other way.
     for (const bool is_front : {true, false}) {
         const LensSide& side = is_front ? lens.front : lens.back;
-        const double turn = is_front ? -1 : 1, vertex = is_front ? 0 : lens.thickness;
+        const double turn = is_front ? -1 : 1;
         const Patch patch = [&](double u, double v) {
             const double r = (1 - v) * side.aperture + v * lens.hole;
-            const Sag sag = sag_at(side, r * r);
-            const Vec3 out = frame.around(is_front ? 1 - u : u);
-            return SurfaceCorner{on({r, vertex + sag.z}, out),
-                                 turn * normalize(frame.axis - 2 * sag.by_s * r * out)};
+            const Vec2 q = r * AxisFrame::turned(is_front ? 1 - u : u);
+            return SurfaceCorner{on(side, q), turn * normalize(frame.axis - across(sag_over(side, q).slope))};
         };
         add_patch(patch, p.segments, (p.segments + 3) / 4, {false, lens.hole == 0}, mesh);
     }
-    const Ring low{lens.front.aperture, sag_of_rim(lens.front)},
-        high{lens.back.aperture, lens.thickness + sag_of_rim(lens.back)};
     const Patch edge = [&](double u, double v) {
-        const Vec3 out = frame.around(u);
-        return SurfaceCorner{(1 - v) * on(low, out) + v * on(high, out),
-                             normalize((high.z - low.z) * out - (high.radius - low.radius) * frame.axis)};
+        const Vec2 out = AxisFrame::turned(u), around(-out.y, out.x);
+        const Vec2 low = lens.front.aperture * out, high = lens.back.aperture * out;
+        const Vec3 up = on(lens.back, high) - on(lens.front, low);
+        // Along the rims, a share v of the way from one to the other.
+        const double rise = (1 - v) * dot(sag_over(lens.front, low).slope, lens.front.aperture * around) +
+                            v * dot(sag_over(lens.back, high).slope, lens.back.aperture * around);
+        const double radius = (1 - v) * lens.front.aperture + v * lens.back.aperture;
+        const Vec3 along = radius * across(around) + rise * frame.axis;
+        return SurfaceCorner{(1 - v) * on(lens.front, low) + v * on(lens.back, high),
+                             normalize(cross(along, up))};
     };
     add_patch(edge, p.segments, 1, {}, mesh);
     if (lens.hole == 0) return;
-    const double s = lens.hole * lens.hole;
-    const Ring front{lens.hole, sag_at(lens.front, s).z},
-        back{lens.hole, lens.thickness + sag_at(lens.back, s).z};
     const Patch wall = [&](double u, double v) {
-        const Vec3 out = frame.around(1 - u);
-        return SurfaceCorner{(1 - v) * on(front, out) + v * on(back, out), -out};
+        const Vec2 out = AxisFrame::turned(1 - u), q = lens.hole * out;
+        return SurfaceCorner{(1 - v) * on(lens.front, q) + v * on(lens.back, q), -across(out)};
     };
     add_patch(wall, p.segments, 1, {}, mesh);
 }

@@ -194,8 +194,11 @@ void add(const Primitive& primitive, Digest& digest) {
     std::visit([&](auto& one) { for_each_length(one, add_length); }, kind);
     if (const auto* lens = std::get_if<LensPrimitive>(&kind)) {
         for (const LensSide& side : {lens->front, lens->back}) {
-            const auto& [curvature, conic, coefficients, aperture, normal_departures] = side;
+            const auto& [curvature, conic, coefficients, aperture, normal_departures, form, across_curvature,
+                         across_conic] = side;
             digest.add_all(curvature, conic, coefficients, aperture, normal_departures);
+            if (!is_round(side))  // keys of older sweeps stay
+                digest.add_all(static_cast<std::size_t>(form), across_curvature, across_conic);
         }
         digest.add(lens->hole);
     }

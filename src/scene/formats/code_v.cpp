@@ -1,7 +1,9 @@
 // Reads what CODE V's sequences say of their surfaces: commands between semicolons, lines that go on after
 // '&'.
 #include <algorithm>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/util/error.h"
@@ -13,13 +15,16 @@ namespace trilens {
 namespace {
 
 /// Commands of a surface that are read, but for its terms (A to J) and tilts.
-constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR",
-                                              "STO", "K",   "DAR", "BEN", "REV"};
+constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR", "STO", "K",  "DAR",
+                                              "BEN", "REV", "YTO", "XTO", "AAS", "RDX", "CUX", "KX", "KY"};
 
-/// Commands of surfaces that are none of revolution, that neither refract nor reflect, or whose tilts are not
+/// What an anamorphic asphere has beyond its two conic sections.
+constexpr std::string_view kAnamorphicTerms[] = {"AR", "BR", "CR", "DR", "AP", "BP", "CP", "DP"};
+
+/// Commands of surfaces of other kinds, that neither refract nor reflect, or whose tilts are not
 /// about their own vertex.
-constexpr std::string_view kRefused[] = {"REFL", "CYL", "YTO", "XTO", "SPS", "GRT", "HOE", "DIF",
-                                         "NSS",  "REX", "REY", "ELX", "ELY", "GRX", "ADX", "ADY",
+constexpr std::string_view kRefused[] = {"REFL", "CYL", "SPS", "GRT", "HOE", "DIF", "NSS",
+                                         "REX",  "REY", "ELX", "ELY", "GRX", "ADX", "ADY",
                                          "THG",  "XOD", "YOD", "ZOD", "GLB", "RET"};
 /// Those of them that say where a surface is.
 constexpr std::string_view kPlacing[] = {"THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
@@ -31,6 +36,11 @@ constexpr std::string_view kTilts[] = {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"}
 struct WrittenTilt {
     LensTilt tilt;
     std::string place = {};  // of the last command that says something
+};
+
+/// What a surface says of its section along x.
+struct WrittenX {
+    std::optional<double> curvature = {}, conic = {};
 };
 
 /// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
@@ -73,7 +83,10 @@ class SequenceReader : LensLines {
         if (!command.empty()) take_all(command);
         if (!ended_)
             throw InputError(lens_.file, "", "has no surfaces from SO to SI: it is no CODE V sequence");
-        for (std::size_t i = 0; i < lens_.rows.size(); ++i) bend(lens_.rows[i], tilts_[i]);
+        for (std::size_t i = 0; i < lens_.rows.size(); ++i) {
+            bend(lens_.rows[i], tilts_[i]);
+            set_form(lens_.rows[i], x_of_rows_[i]);
+        }
         if (object_tilt_.tilt.decentre != Vec3(0) || object_tilt_.tilt.degrees != Vec3(0))
             throw InputError(lens_.file, object_tilt_.place,
                              "the object (SO) is tilted or decentred: that is not read");
@@ -130,6 +143,7 @@ class SequenceReader : LensLines {
         LensRow& row = lens_.rows.emplace_back();
         row.place = place();
         tilts_.emplace_back();
+        x_of_rows_.emplace_back();
         if (words.size() > 1) set_curvature(number(words, 1), by_curvature_);
         if (words.size() > 2) row.thickness = number(words, 2);
         if (words.size() > 3) set_glass(words[3]);
@@ -147,8 +161,28 @@ class SequenceReader : LensLines {
         }
     }
 
+    static double curvature_of(double value, bool is_curvature) {
+        return is_curvature ? value : value == 0 ? 0 : 1 / value;
+    }
+
     void set_curvature(double value, bool is_curvature) {
-        lens_.rows.back().side.curvature = is_curvature ? value : value == 0 ? 0 : 1 / value;
+        lens_.rows.back().side.curvature = curvature_of(value, is_curvature);
+    }
+
+    /// What stands of x and of y is known at the end alone. A profile along x has RDX or CUX, and is turned
+    /// at RDY or CUY.
+    void set_form(LensRow& row, const WrittenX& x) const {
+        LensSide& side = row.side;
+        if (is_round(side) && (x.curvature || x.conic))
+            throw InputError(lens_.file, row.place,
+                             "RDX, CUX and KX are read of toric and biconic surfaces (YTO, XTO, AAS)");
+        if (!is_round(side) && side.form != SideForm::kBiconic && x.conic.value_or(0) != 0)
+            throw InputError(lens_.file, row.place, "KX is read of biconic surfaces (AAS)");
+        side.across_curvature = x.curvature.value_or(0);
+        side.across_conic = x.conic.value_or(0);
+        if (side.form == SideForm::kToricX) std::swap(side.curvature, side.across_curvature);
+        if (side.form == SideForm::kBiconic && has_coefficients(side))
+            throw InputError(lens_.file, row.place, "A to G are not of an anamorphic asphere (AAS)");
     }
 
     /// "NSK16_SCHOTT", "'MINE'": quotes and the maker's name are left out, and the hyphen behind N or P is
@@ -176,8 +210,10 @@ class SequenceReader : LensLines {
         const bool is_named = words.size() > 1 && names_surface(words[1]);
         if (is_among(kRefused, key) &&
             (part_ == Part::kLens || is_named || (part_ != Part::kNone && is_among(kPlacing, key))))
-            fail(key + ": surfaces of revolution that refract or reflect are read");
+            fail(key + ": conicoids, even aspheres, toric (YTO, XTO) and biconic (AAS) surfaces are read");
         const bool is_term = key.size() == 1 && key[0] >= 'A' && key[0] <= 'J' && key != "I";
+        if (part_ == Part::kLens && !is_named && is_among(kAnamorphicTerms, key) && number(words, 1) != 0)
+            fail(key + ": of an anamorphic asphere (AAS) its conic sections are read");
         if (is_named && (is_term || is_among(kSurfaceWords, key) || is_among(kTilts, key)))
             fail(key + " " + std::string(words[1]) +
                  ": commands of a surface are read behind it, without its name");
@@ -208,8 +244,18 @@ class SequenceReader : LensLines {
             set_aperture(words);
         else if (key == "STO")
             row.stop = true;
-        else if (key == "K")
+        else if (key == "K" || key == "KY")
             row.side.conic = number(words, 1);
+        else if (key == "YTO")
+            row.side.form = SideForm::kToricY;
+        else if (key == "XTO")
+            row.side.form = SideForm::kToricX;
+        else if (key == "AAS")
+            row.side.form = SideForm::kBiconic;
+        else if (key == "RDX" || key == "CUX")
+            x_of_rows_.back().curvature = curvature_of(number(words, 1), key == "CUX");
+        else if (key == "KX")
+            x_of_rows_.back().conic = number(words, 1);
         else if (key.size() == 1 && kTerms.find(key[0]) != std::string_view::npos)
             row.side.coefficients[kTerms.find(key[0]) + 1] = number(words, 1);
         else if ((key == "H" || key == "J") && number(words, 1) != 0)
@@ -294,7 +340,8 @@ class SequenceReader : LensLines {
     enum class Part { kNone, kObject, kLens, kImage };  // whose commands are read
 
     WrittenTilt object_tilt_, image_tilt_;
-    std::vector<WrittenTilt> tilts_;   // of the rows
+    std::vector<WrittenTilt> tilts_;  // of the rows
+    std::vector<WrittenX> x_of_rows_;
     std::vector<double> wavelengths_;  // of private glasses
     Part part_ = Part::kNone;
     bool by_curvature_ = false, ended_ = false, in_private_ = false;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/util/error.h"
+#include "lens/q_asphere.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/lens_lines.h"
 #include "scene/formats/utf16.h"
@@ -25,12 +26,15 @@ struct ZemaxSurface {
         double index, value;
         std::string written, place;
     };
-    std::vector<Parameter> parameters;
-    double clear_radius = 0;  // of a circular aperture; 0: the surface has none but its own
+    std::vector<Parameter> parameters, extra;  // PARM, XDAT
+    double clear_radius = 0;                   // of a circular aperture; 0: the surface has none but its own
     std::string aperture_fault = {}, aperture_place = {};
 
-    double parameter(int index) const {
-        for (const Parameter& one : parameters)
+    double parameter(int index) const { return value_of(parameters, index); }
+    double extra_value(int index) const { return value_of(extra, index); }
+
+    static double value_of(const std::vector<Parameter>& of, int index) {
+        for (const Parameter& one : of)
             if (one.index == index) return one.value;
         return 0;
     }
@@ -110,9 +114,10 @@ class ZemaxReader : LensLines {
             surface.aperture_fault =
                 std::string(key) + ": circular apertures about the vertex (DIAM, CLAP) are read";
             surface.aperture_place = place();
-        } else if (key == "PARM") {
+        } else if (key == "PARM" || key == "XDAT") {
             const double index = number(words, 1);
-            surface.parameters.push_back({index, number(words, 2), std::string(words[1]), place()});
+            (key == "PARM" ? surface.parameters : surface.extra)
+                .push_back({index, number(words, 2), std::string(words[1]), place()});
         } else if (key == "GLAS") {
             row.mirror = words.size() > 1 && words[1] == "MIRROR";
             row.glass = row.mirror ? Glass() : glass(words);
@@ -124,15 +129,74 @@ class ZemaxReader : LensLines {
         return std::find(std::begin(kApertures), std::end(kApertures), words[0]) != std::end(kApertures);
     }
 
-    void set_coefficients(const ZemaxSurface& surface, LensSide& side) const {
+    /// Terms from PARM `first` on; other parameters have been taken, up to `first`.
+    void set_coefficients(const ZemaxSurface& surface, int first, std::size_t count, LensSide& side) const {
         for (const ZemaxSurface::Parameter& one : surface.parameters) {
-            const bool is_term = one.index >= 1 && one.index <= static_cast<double>(kAsphereTerms) &&
-                                 one.index == std::floor(one.index);
-            if (is_term)
-                side.coefficients[static_cast<std::size_t>(one.index) - 1] = one.value;
-            else if (one.value != 0)
-                throw InputError(lens_.file, one.place, "PARM " + one.written + " is not of an even asphere");
+            const double term = one.index - first;
+            if (term >= 0 && term < static_cast<double>(count) && term == std::floor(term))
+                side.coefficients[static_cast<std::size_t>(term)] = one.value;
+            else if (one.value != 0 && !(one.index >= 1 && one.index < first))
+                throw InputError(lens_.file, one.place,
+                                 "PARM " + one.written + " is not read of surfaces of type " + surface.type);
         }
+    }
+
+    /// What a surface of its type has beside radius and conic constant.
+    void set_form(const ZemaxSurface& surface, LensSide& side) const {
+        const auto curvature = [](double radius) { return radius == 0 ? 0 : 1 / radius; };
+        if (surface.type == "EVENASPH") {
+            set_coefficients(surface, 1, kAsphereTerms, side);
+        } else if (surface.type == "BICONICX") {
+            set_coefficients(surface, 3, 0, side);
+            side.form = SideForm::kBiconic;
+            side.across_curvature = curvature(surface.parameter(1));
+            side.across_conic = surface.parameter(2);
+        } else if (surface.type == "TOROIDAL") {
+            set_coefficients(surface, 2, kAsphereTerms - 1, side);
+            side.form = SideForm::kToricY;
+            side.across_curvature = curvature(surface.parameter(1));
+        } else if (surface.type == "QED_TYPE") {
+            set_q_terms(surface, side);
+        } else if (surface.type != "STANDARD") {
+            throw InputError(lens_.file, surface.type_place,
+                             "a surface of type " + surface.type +
+                                 ": STANDARD, EVENASPH, BICONICX, TOROIDAL, " +
+                                 "QED_TYPE and COORDBRK are read");
+        }
+        if (surface.type == "QED_TYPE" || surface.type == "STANDARD") return;
+        for (const ZemaxSurface::Parameter& one : surface.extra)
+            if (one.value != 0)
+                throw InputError(lens_.file, one.place,
+                                 "XDAT " + one.written + " is not read of surfaces of type " + surface.type);
+    }
+
+    /// XDAT 1: 0 for Qbfs, 1 for Qcon; 2: how many terms; 3: the normalization radius; from 4 on A0, A1, ...
+    void set_q_terms(const ZemaxSurface& surface, LensSide& side) const {
+        const auto fail_at_type = [&](const std::string& why) {
+            throw InputError(lens_.file, surface.type_place, "a Q-type asphere " + why);
+        };
+        const double kind = surface.extra_value(1), count = surface.extra_value(2),
+                     radius = surface.extra_value(3);
+        if (kind != 0 && kind != 1) fail_at_type("of a kind (XDAT 1) that is neither 0, Qbfs, nor 1, Qcon");
+        if (!(count >= 0) || count != std::floor(count))
+            fail_at_type("whose number of terms (XDAT 2) is no whole number");
+        if (count > 0 && !(radius > 0)) fail_at_type("without a normalization radius (XDAT 3)");
+        std::vector<double> terms;
+        for (const ZemaxSurface::Parameter& one : surface.extra) {
+            const double term = one.index - 4;
+            if (!(term >= 0) || !(term < count) || one.value == 0) continue;
+            if (!(term < static_cast<double>(kQTerms)))
+                throw InputError(lens_.file, one.place, "XDAT " + one.written + " is beyond r^16");
+            terms.resize(std::max(terms.size(), static_cast<std::size_t>(term) + 1));
+            terms[static_cast<std::size_t>(term)] = one.value;
+        }
+        if (terms.empty()) return;
+        if (kind == 0 && side.conic != 0)
+            fail_at_type("of the kind Qbfs departs from a sphere: CONI must be 0");
+        if (kind == 0)
+            side.normal_departures = qbfs_departures(terms, radius);
+        else
+            side.coefficients = qcon_coefficients(terms, radius);
     }
 
     /// By name; a model glass has its index and Abbe number in the line.
@@ -152,13 +216,8 @@ class ZemaxReader : LensLines {
             add_break(surface);
             return;
         }
-        const bool is_asphere = surface.type == "EVENASPH";
-        if (!is_asphere && surface.type != "STANDARD")
-            throw InputError(
-                lens_.file, surface.type_place,
-                "a surface of type " + surface.type + ": STANDARD, EVENASPH and COORDBRK are read");
         LensRow& row = lens_.rows.emplace_back(surface.row);
-        if (is_asphere) set_coefficients(surface, row.side);
+        set_form(surface, row.side);
         double& rim = row.side.aperture;
         if (surface.clear_radius > 0)
             rim = rim > 0 ? std::min(rim, surface.clear_radius) : surface.clear_radius;

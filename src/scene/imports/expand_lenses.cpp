@@ -36,6 +36,14 @@ Json side_json(const LensSide& side) {
         json["coefficients"] = side.coefficients;
     if (departs_along_normal(side)) json["normalDepartures"] = side.normal_departures;
     json["aperture"] = side.aperture;
+    const double across = side.across_curvature == 0 ? 0 : 1 / side.across_curvature;
+    if (side.form == SideForm::kBiconic) {
+        json["radiusX"] = across;
+        json["conicX"] = side.across_conic;
+    } else if (!is_round(side)) {
+        json["rotationRadius"] = across;
+        json["profileAlong"] = side.form == SideForm::kToricY ? "y" : "x";
+    }
     return json;
 }
 

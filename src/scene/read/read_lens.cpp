@@ -17,7 +17,10 @@ namespace {
 struct WrittenSide {
     double radius = 0;  // 0: flat
     double conic = 0, aperture = 1;
-    double normalization_radius = 0;  // 0: the aperture
+    double normalization_radius = 0;   // 0: the aperture
+    double x_radius = 0, x_conic = 0;  // of a biconic; radius 0: flat
+    double rotation_radius = 0;        // of a toric side; 0: a cylinder
+    LensSection profile = LensSection::kY;
 };
 
 Json terms(std::size_t most) {
@@ -43,6 +46,17 @@ const std::vector<Field<WrittenSide>>& side_fields() {
         setting("normalizationRadius", &WrittenSide::normalization_radius, ref("positive"),
                 "Of qcon and qbfs, where their u is 1; without it, the aperture.")
             .without_default(),
+        setting(
+            "radiusX", &WrittenSide::x_radius, ref("number"),
+            "Makes it a biconic, whose radius and conic are those along y: of curvature along x; 0: flat.")
+            .without_default(),
+        setting("conicX", &WrittenSide::x_conic, ref("number"), "Of a biconic, along x."),
+        setting("rotationRadius", &WrittenSide::rotation_radius, ref("number"),
+                "Makes it toric: its profile, by radius, conic and coefficients, is turned about a line "
+                "across the axis at this distance, positive behind the surface; 0: a cylinder.")
+            .without_default(),
+        choice("profileAlong", &WrittenSide::profile,
+               "The axis along which a toric side's profile lies; it is turned about a line parallel to it."),
         setting("aperture", &WrittenSide::aperture, ref("positive"), "Radius of its rim."),
     };
     return fields;
@@ -72,12 +86,36 @@ LensSide side_of(const WrittenSide& written, const Node& node) {
     add_terms(node.json, "normalDepartures", side.normal_departures);
     add_q_terms(node, "qcon", written, qcon_coefficients, side.coefficients);
     add_q_terms(node, "qbfs", written, qbfs_departures, side.normal_departures);
+    if (node.has("radiusX") || node.has("conicX")) {
+        side.form = SideForm::kBiconic;
+        side.across_curvature = written.x_radius == 0 ? 0 : 1 / written.x_radius;
+        side.across_conic = written.x_conic;
+    } else if (node.has("rotationRadius")) {
+        side.form = written.profile == LensSection::kY ? SideForm::kToricY : SideForm::kToricX;
+        side.across_curvature = written.rotation_radius == 0 ? 0 : 1 / written.rotation_radius;
+    }
     return side;
+}
+
+/// Keys beside each other that say different things of a side's form.
+void check_form(const Node& side) {
+    const auto refuse = [&side](std::initializer_list<const char*> keys, const char* why) {
+        for (const char* key : keys)
+            if (side.has(key)) side[key].fail(why);
+    };
+    const bool is_biconic = side.has("radiusX") || side.has("conicX");
+    if (side.has("conicX") && !side.has("radiusX")) side["conicX"].fail("needs a radiusX beside it");
+    if (is_biconic) refuse({"rotationRadius"}, "stands beside radiusX: a side is biconic or toric");
+    if (is_biconic) refuse({"coefficients"}, "has no place on a biconic side");
+    if (is_biconic || side.has("rotationRadius"))
+        refuse({"normalDepartures", "qcon", "qbfs"}, "is of a side of revolution alone");
+    if (!side.has("rotationRadius")) refuse({"profileAlong"}, "needs a rotationRadius beside it");
 }
 
 }  // namespace
 
 void check_lens_side(const Node& side) {
+    check_form(side);
     if (!side.has("conic") || side["conic"].json.get<double>() == 0) return;
     for (const char* key : {"qbfs", "normalDepartures"})
         if (side.has(key)) side[key].fail("departs from a sphere: the side's conic must be 0");
@@ -95,7 +133,8 @@ Json lens_side_schema() {
     return object_schema(
         {.title = "a lens' side",
          .description = "c r^2 / (1 + sqrt(1 - (1 + conic) c^2 r^2)) along the axis at r from it, c = 1 / "
-                        "radius; and the terms of an even or a Q-type asphere.",
+                        "radius; and the terms of an even or a Q-type asphere. With radiusX a biconic, "
+                        "with rotationRadius a toric side.",
          .required = {"aperture"}},
         side_fields());
 }

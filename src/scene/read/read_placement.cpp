@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "base/description/lens_sag.h"
 #include "json/kinds.h"
 #include "scene/read/reading.h"
 

@@ -1,0 +1,149 @@
+// Biconic, toric and Q-type surfaces of lens files and of JSON.
+#include <cmath>
+#include <string>
+
+#include "base/util/error.h"
+#include "lens/q_asphere.h"
+#include "scene/formats/lens_file.h"
+#include "scene/read/read_lens.h"
+#include "scene/scene_text.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+LensPrescription zemax(const std::string& type, const std::string& lines) {
+    return parse_lens("MODE SEQ\nSURF 0\n  DISZ INFINITY\nSURF 1\n  TYPE " + type +
+                          "\n  CURV 0.02\n  CONI -0.5\n" + lines +
+                          "  DISZ 4\n  GLAS N-BK7\n  DIAM 8\nSURF 2\n  DISZ 0\n  DIAM 8\nSURF 3\n",
+                      "a.zmx");
+}
+
+LensPrescription code_v(const std::string& words) {
+    return parse_lens("RDM\nSO 0 1E13\nS 50 4 NBK7\n" + words + "\nS 0 9\nSI 0 0\n", "a.seq");
+}
+
+template <typename Read>
+std::string refusal_of(const Read& read) {
+    try {
+        read();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("biconics and toroids of Zemax files have their radii and terms", "[scene][lens]") {
+    const LensSide biconic = zemax("BICONICX", "  PARM 1 80\n  PARM 2 1.5\n").rows[0].side;
+    CHECK(biconic.form == SideForm::kBiconic);
+    CHECK(biconic.curvature == 0.02);
+    CHECK(biconic.conic == -0.5);
+    CHECK(biconic.across_curvature == 1.0 / 80);
+    CHECK(biconic.across_conic == 1.5);
+    // A radius of 0 is a flat section.
+    CHECK(zemax("BICONICX", "  PARM 1 0\n").rows[0].side.across_curvature == 0);
+    const LensSide toroid =
+        zemax("TOROIDAL", "  PARM 1 -60\n  PARM 2 1e-3\n  PARM 3 2e-5\n  PARM 8 1e-18\n  XDAT 1 0 0 0\n")
+            .rows[0]
+            .side;
+    CHECK(toroid.form == SideForm::kToricY);
+    CHECK(toroid.across_curvature == -1.0 / 60);
+    CHECK(toroid.coefficients == std::array{1e-3, 2e-5, 0.0, 0.0, 0.0, 0.0, 1e-18, 0.0});
+    CHECK(refusal_of([] { zemax("BICONICX", "  PARM 3 1\n"); }) ==
+          "a.zmx: line 8: PARM 3 is not read of surfaces of type BICONICX");
+    CHECK(refusal_of([] { zemax("TOROIDAL", "  PARM 9 1\n"); }) ==
+          "a.zmx: line 8: PARM 9 is not read of surfaces of type TOROIDAL");
+    CHECK(refusal_of([] { zemax("TOROIDAL", "  XDAT 1 4 0 0\n"); }) ==
+          "a.zmx: line 8: XDAT 1 is not read of surfaces of type TOROIDAL");
+}
+
+TEST_CASE("Q-type aspheres of Zemax files are those of the polynomials", "[scene][lens]") {
+    const std::string extra = "  XDAT 2 3 0 0\n  XDAT 3 9 0 0\n  XDAT 4 0.02 0 0\n  XDAT 6 -0.01 0 0\n";
+    const std::vector<double> terms{0.02, 0, -0.01};
+    const LensSide strong = zemax("QED_TYPE", "  XDAT 1 1 0 0\n" + extra).rows[0].side;
+    CHECK(strong.coefficients == qcon_coefficients(terms, 9));
+    CHECK(strong.conic == -0.5);
+    const LensSide mild = zemax("QED_TYPE", "  XDAT 1 0 0 0\n" + extra + "  CONI 0\n").rows[0].side;
+    CHECK(mild.normal_departures == qbfs_departures(terms, 9));
+    CHECK(is_conicoid(zemax("QED_TYPE", "").rows[0].side));
+    const auto refused = [&](const std::string& lines) {
+        return refusal_of([&] { zemax("QED_TYPE", lines); });
+    };
+    CHECK(refused("  XDAT 1 0 0 0\n" + extra) ==
+          "a.zmx: line 5: a Q-type asphere of the kind Qbfs departs from a sphere: CONI must be 0");
+    CHECK(refused("  XDAT 1 2 0 0\n").find("neither 0, Qbfs, nor 1, Qcon") != std::string::npos);
+    CHECK(refused("  XDAT 1 1 0 0\n  XDAT 2 1 0 0\n").find("without a normalization radius") !=
+          std::string::npos);
+    CHECK(refused("  XDAT 1 1 0 0\n  XDAT 2 1.5 0 0\n").find("no whole number") != std::string::npos);
+    CHECK(refused("  XDAT 1 1 0 0\n  XDAT 2 9 0 0\n  XDAT 3 9 0 0\n  XDAT 11 1e-3 0 0\n") ==
+          "a.zmx: line 11: XDAT 11 is beyond r^16");
+}
+
+TEST_CASE("toric and anamorphic surfaces of CODE V have their radii and terms", "[scene][lens]") {
+    const LensSide along_y = code_v("YTO; RDX 80; K -0.5; A 1e-6").rows[0].side;
+    CHECK(along_y.form == SideForm::kToricY);
+    CHECK(along_y.curvature == 1.0 / 50);
+    CHECK(along_y.across_curvature == 1.0 / 80);
+    CHECK(along_y.conic == -0.5);
+    CHECK(along_y.coefficients[1] == 1e-6);
+    // Its profile lies along x: what is written of y is where it is turned.
+    const LensSide along_x = code_v("XTO; CUX 0.0125; K -0.5").rows[0].side;
+    CHECK(along_x.form == SideForm::kToricX);
+    CHECK(along_x.curvature == 0.0125);
+    CHECK(along_x.across_curvature == 1.0 / 50);
+    const LensSide both = code_v("AAS; RDX 80; KX 1.5; KY -0.5; AR 0; AP 0").rows[0].side;
+    CHECK(both.form == SideForm::kBiconic);
+    CHECK(both.curvature == 1.0 / 50);
+    CHECK(both.across_curvature == 1.0 / 80);
+    CHECK(both.conic == -0.5);
+    CHECK(both.across_conic == 1.5);
+    const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
+    CHECK(refused("RDX 80") ==
+          "a.seq: line 3: RDX, CUX and KX are read of toric and biconic surfaces (YTO, "
+          "XTO, AAS)");
+    CHECK(refused("YTO; KX 1") == "a.seq: line 3: KX is read of biconic surfaces (AAS)");
+    CHECK(refused("AAS; A 1e-6") == "a.seq: line 3: A to G are not of an anamorphic asphere (AAS)");
+    CHECK(refused("AAS; BR 1e-6") ==
+          "a.seq: line 4: BR: of an anamorphic asphere (AAS) its conic sections are read");
+    CHECK(refused("YTO S1") ==
+          "a.seq: line 4: YTO S1: commands of a surface are read behind it, without its "
+          "name");
+    CHECK(refused("SPS QBF").starts_with("a.seq: line 4: SPS: "));
+}
+
+TEST_CASE("a scene's anamorphic sides are those of its bodies, and keys that disagree are refused",
+          "[scene][lens]") {
+    const std::string scene =
+        R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -9], "at": [0, 0, 0]}}], "lenses": [{"name": "t",
+            "transform": {"scale": [2, 2, 2]}, "surfaces": [
+            {"radius": 9, "radiusX": -12, "conicX": 0.5, "aperture": 1, "thickness": 1, "glass": "N-BK7"},
+            {"radius": -7, "rotationRadius": 0, "profileAlong": "x", "coefficients": [0, 0.01], "aperture": 1.2}]}]})";
+    const Scene read = load_text(scene);
+    REQUIRE(read.meshes.size() == 1);
+    const auto& lens = std::get<LensPrimitive>(read.meshes[0].primitive->kind);
+    CHECK(lens.front.form == SideForm::kBiconic);
+    CHECK(lens.front.across_curvature == -1.0 / 24);
+    CHECK(lens.front.across_conic == 0.5);
+    CHECK(lens.back.form == SideForm::kToricX);
+    CHECK(lens.back.across_curvature == 0);
+    CHECK(std::fabs(lens.back.coefficients[1] - 0.01 / 8) < 1e-18);
+    // What is written of the scene is the same.
+    const Scene again = load_text(read.resolved);
+    const auto& same = std::get<LensPrimitive>(again.meshes[0].primitive->kind);
+    CHECK(same.front.across_curvature == lens.front.across_curvature);
+    CHECK(same.back.form == SideForm::kToricX);
+
+    const auto refused = [](const std::string& keys) {
+        return refusal_of([&] { parse_lens_side(R"({"aperture": 1, )" + keys + "}", "side"); });
+    };
+    CHECK(refused(R"("conicX": 1)") == "side: /conicX: needs a radiusX beside it");
+    CHECK(refused(R"("radiusX": 4, "rotationRadius": 5)").starts_with("side: /rotationRadius: "));
+    CHECK(refused(R"("radiusX": 4, "coefficients": [0, 1])").starts_with("side: /coefficients: "));
+    CHECK(refused(R"("rotationRadius": 4, "radius": 9, "qbfs": [1])").starts_with("side: /qbfs: "));
+    CHECK(refused(R"("profileAlong": "x")") == "side: /profileAlong: needs a rotationRadius beside it");
+    CHECK(refused(R"("rotationRadius": 4, "profileAlong": "z")").starts_with("side: /profileAlong: "));
+}
