@@ -16,6 +16,17 @@ inline trilens::Image drawn_by(trilens::World& world, int spp, const trilens::En
     return trilens::draw_picture(world, request, {}, ignore, nullptr).image;
 }
 
+/// One row of it.
+inline trilens::Image row_drawn_by(const trilens::World& world, int row,
+                                   const trilens::EngineChoice& engine) {
+    trilens::PictureRequest request;
+    request.engine = engine;
+    request.layers.y0 = row;
+    request.layers.x1 = world.scene.film.width;
+    request.layers.y1 = row + 1;
+    return trilens::draw_picture(world, request, {}, ignore, nullptr).image;
+}
+
 /// Of the green channel: root of the mean square of the differences, their mean, and the mean of `to`.
 struct PictureError {
     double rms = 0, bias = 0, mean = 0;
