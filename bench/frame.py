@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """Times whole commands as a user waits for them, and says where a picture's time goes.
 
-    python3 bench/frame.py BUILD FOLDER [REPEATS]
+    python3 bench/frame.py BUILD FOLDER [small]
 
-BUILD holds `trilens` and `bench/bench_stages`. The commands take turns, REPEATS rounds (5), with one thread and with
-two; a row has the median, lowest and highest seconds of wall, the median processor seconds and the peak memory.
+BUILD holds `trilens` and `bench/bench_stages`. The commands take turns, five rounds, with one thread and with two; a row has the median,
+lowest and highest seconds of wall, the median processor seconds and the peak memory. small: one round, of films and
+numbers so small that the seconds say nothing.
 Writes FOLDER/table.md and, where `perf` may record, FOLDER/profile.md: per cent of the processor's time by what it
 was for.
 """
+import dataclasses
 import json
 import math
 import os
@@ -22,7 +24,24 @@ import tempfile
 import time
 
 THREADS = (1, 2)
-POINTS, SIDE = 100_000, 708  # of `project`; of the field of a million triangles
+
+
+@dataclasses.dataclass
+class Size:
+    """How much the commands are given to do."""
+    repeats: int = 5
+    film: tuple = (1920, 1080)
+    points: int = 100_000  # of `project`
+    side: int = 708        # of the field: its triangles are twice the square
+    runs: int = 16         # of the sweep
+    prepared: int = 1_002_252  # triangles of the trees, a size of bench_stages
+
+    def film_text(self, times=1):
+        return f"{times * self.film[0]}x{times * self.film[1]}"
+
+
+WHOLE, SMALL = Size(), Size(1, (320, 180), 2000, 40, 2, 972)
+
 
 # what a profile counts together: name, symbols or libraries
 GROUPS = [
@@ -42,24 +61,24 @@ GROUPS = [
 ]
 
 
-def field_of_triangles(file):
-    """A bumpy floor of a million triangles."""
+def field_of_triangles(file, side):
+    """A bumpy floor."""
     with open(file, "w") as out:
-        for j in range(SIDE + 1):
-            for i in range(SIDE + 1):
-                x, z = 6 * i / SIDE - 3, 8 * j / SIDE - 3
+        for j in range(side + 1):
+            for i in range(side + 1):
+                x, z = 6 * i / side - 3, 8 * j / side - 3
                 out.write(f"v {x:.6f} {-1.2 + 0.05 * math.sin(9 * x) * math.cos(11 * z):.6f} {z:.6f}\n")
-        for j in range(SIDE):
-            for i in range(SIDE):
-                a = j * (SIDE + 1) + i + 1
-                b, c, d = a + 1, a + SIDE + 1, a + SIDE + 2
+        for j in range(side):
+            for i in range(side):
+                a = j * (side + 1) + i + 1
+                b, c, d = a + 1, a + side + 1, a + side + 2
                 out.write(f"f {a} {c} {b}\nf {b} {c} {d}\n")
 
 
-def write_million(folder, sphere):
+def write_million(folder, sphere, side):
     """The scene of the sphere with that floor in place of its room."""
     scene = json.loads(re.sub(r"^\s*//.*$", "", sphere.read_text(), flags=re.M))
-    field_of_triangles(folder / "field.obj")
+    field_of_triangles(folder / "field.obj", side)
     scene["meshes"] = [m for m in scene["meshes"] if m["role"] == "optic"]
     scene["meshes"].append({"name": "field", "role": "object", "material": "white", "file": "field.obj"})
     used = {m["material"] for m in scene["meshes"]}
@@ -68,21 +87,21 @@ def write_million(folder, sphere):
     return folder / "million.json"
 
 
-def write_points(file):
+def write_points(file, count):
     numbers = random.Random(1)
-    rows = ["x,y,z"] + [f"{numbers.uniform(-3, 3)},{numbers.uniform(0, 3)},{numbers.uniform(-3, 3)}" for _ in range(POINTS)]
+    rows = ["x,y,z"] + [f"{numbers.uniform(-3, 3)},{numbers.uniform(0, 3)},{numbers.uniform(-3, 3)}" for _ in range(count)]
     file.write_text("\n".join(rows) + "\n")
     return file
 
 
-def jobs(folder, sphere):
+def jobs(folder, sphere, size):
     """One sample a pixel. name, aim in seconds, aim in MB, arguments, whether threads matter; `{}` is the number of threads."""
-    hd, uhd = ["--size", "1920x1080", "--spp", "1"], ["--size", "3840x2160", "--spp", "1"]
+    hd, uhd = ["--size", size.film_text(), "--spp", "1"], ["--size", size.film_text(2), "--spp", "1"]
     picture = ["render", str(sphere), "-n", "16", "-q", "-t", "{}"]
     exr = ["-o", str(folder / "o.exr")]
-    million = ["render", str(write_million(folder, sphere)), "-n", "16", "-q", "-t", "{}"]
-    points = write_points(folder / "points.csv")
-    sweep = ["sweep", "run", str(sphere), "--size", "640x480", "--spp", "1", "--over", "resolution=1..16:+1", "-q", "-t", "{}"]
+    million = ["render", str(write_million(folder, sphere, size.side)), "-n", "16", "-q", "-t", "{}"]
+    points = write_points(folder / "points.csv", size.points)
+    sweep = ["sweep", "run", str(sphere), "--size", "640x480", "--spp", "1", "--over", f"resolution=1..{size.runs}:+1", "-q", "-t", "{}"]
     return [
         ("render, beauty to EXR, 1080p", 0.25, None, picture + hd + ["--aov", "Z"] + exr, True),
         ("render, beauty to PNG, 1080p", None, None, picture + hd + ["-o", str(folder / "o.png")], True),
@@ -112,10 +131,10 @@ def run(trilens, arguments, threads, folder):
     return time.perf_counter() - start, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
-def prepared_rows(build):
+def prepared_rows(build, size):
     """The trees over a million triangles on one processor, without a command around them."""
     one = {min(os.sched_getaffinity(0))}
-    out = subprocess.run([str(build / "bench" / "bench_stages"), "--benchmark_filter=prepare.*/1002252",
+    out = subprocess.run([str(build / "bench" / "bench_stages"), f"--benchmark_filter=prepare.*/{size.prepared}",
                           "--benchmark_repetitions=5", "--benchmark_format=json"],
                          check=True, capture_output=True, text=True,
                          preexec_fn=lambda: os.sched_setaffinity(0, one)).stdout
@@ -134,10 +153,10 @@ def row(name, threads, walls, processor, memory, aim, aim_memory):
             "aim": " ".join([f"{aim} s"] * (aim is not None) + [f"{aim_memory} MB"] * (aim_memory is not None))}
 
 
-def timed_rows(trilens, folder, sphere, repeats):
-    cells = [(job, t) for job in jobs(folder, sphere) for t in (THREADS if job[4] else THREADS[:1])]
+def timed_rows(trilens, folder, sphere, size):
+    cells = [(job, t) for job in jobs(folder, sphere, size) for t in (THREADS if job[4] else THREADS[:1])]
     results = [[] for _ in cells]
-    for _ in range(repeats):
+    for _ in range(size.repeats):
         for (job, threads), result in zip(cells, results):
             result.append(run(trilens, job[3], threads, folder))
     return [row(job[0], threads if job[4] else "", [r[0] for r in result],
@@ -172,8 +191,8 @@ def profile(trilens, folder, arguments, threads):
     return shares
 
 
-def profile_rows(trilens, folder, sphere):
-    wanted = [job for job in jobs(folder, sphere) if job[0] in ("render, beauty to EXR, 1080p",
+def profile_rows(trilens, folder, sphere, size):
+    wanted = [job for job in jobs(folder, sphere, size) if job[0] in ("render, beauty to EXR, 1080p",
                                                                  "render, all layers to EXR, 1080p")]
     columns = {}
     for job in wanted:
@@ -189,16 +208,16 @@ def profile_rows(trilens, folder, sphere):
 
 def main():
     build, out = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-    repeats = int(sys.argv[3]) if len(sys.argv) > 3 else 5
+    size = SMALL if sys.argv[3:] == ["small"] else WHOLE
     sphere = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "sphere.json"
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         shutil.copytree(sphere.parent / "textures", folder / "textures")
-        rows = timed_rows(build / "trilens", folder, sphere, repeats) + prepared_rows(build)
+        rows = timed_rows(build / "trilens", folder, sphere, size) + prepared_rows(build, size)
         (out / "table.md").write_text(markdown(rows))
         print(markdown(rows))
-        profiles = profile_rows(build / "trilens", folder, sphere) if shutil.which("perf") else []
+        profiles = profile_rows(build / "trilens", folder, sphere, size) if shutil.which("perf") else []
         if profiles:
             (out / "profile.md").write_text(markdown(profiles))
             print(markdown(profiles))

@@ -129,14 +129,17 @@ std::vector<Byte*> bytes_of(Rows& rows) {
 void zip_rows(State& state) {
     const auto rows = picture_rows();
     const auto bytes = bytes_of<const unsigned char>(rows);
-    for (auto step : state) benchmark::DoNotOptimize(zip_block(bytes, kZipRows, kWidth));
+    BlockScratch scratch;
+    for (auto step : state) benchmark::DoNotOptimize(zip_block(bytes, kZipRows, kWidth, scratch));
     state.SetBytesProcessed(state.iterations() * 5 * 4 * kZipRows * kWidth);
 }
 BENCHMARK(zip_rows)->Unit(benchmark::kMicrosecond);
 
 void unzip_rows(State& state) {
     auto rows = picture_rows();
-    std::vector<unsigned char> packed = zip_block(bytes_of<const unsigned char>(rows), kZipRows, kWidth);
+    BlockScratch scratch;
+    std::vector<unsigned char> packed =
+        zip_block(bytes_of<const unsigned char>(rows), kZipRows, kWidth, scratch);
     const auto bytes = bytes_of<unsigned char>(rows);
     for (auto step : state) benchmark::DoNotOptimize(unzip_block(packed, bytes, kZipRows, kWidth));
     state.SetBytesProcessed(state.iterations() * 5 * 4 * kZipRows * kWidth);
