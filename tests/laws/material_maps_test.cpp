@@ -68,7 +68,7 @@ std::vector<Case> cases() {
         R"({"pattern": "checker", "count": [8, 8], "transform": {"scale": [10, 10]}})";
     return {{"matt ripples", ripples, kAbove, 0.06, 0.06, 0.01, 0.5},
             {"rippled metal", R"("metallicFactor": 1, "roughnessFactor": 0.45, )" + ripples, kAhead, 0.45,
-             0.28, 0.06},
+             0.225, 0.06},
             {"two metals", R"("metallicFactor": 1, "roughnessFactor": 1, "metallicRoughnessTexture":
                 {"pattern": "checker", "count": [8, 8], "colors": [[0, 0.7, 1], [0, 0.4, 1]],
                  "transform": {"scale": [10, 10]}})",

@@ -19,8 +19,9 @@ constexpr std::size_t kCorners = SpreadContribution::kCorners;
 // Of the light at the shaded point: how far that at the outermost samples may be off in the mean, where
 // samples are not lit one by one, and, of whole pixels, not in blocks either.
 constexpr double kWholeRoom = 0.25, kPartRoom = 0.05, kBlockRoom = 0.06;
-constexpr double kPolished =
-    0.3;  // surfaces of less roughness are shaded sample by sample: highlights are small
+// Shaded sample by sample: surfaces of less roughness, whose highlights are small, and those whose bumps
+// inside a fragment make up for more of it, which one wider lobe shows in the wrong places.
+constexpr double kPolished = 0.3, kWidened = 0.05;
 
 /// Contributions of several fragments, shaded together.
 class FragmentContributions {
@@ -91,6 +92,16 @@ void FragmentContributions::find_light_at_corners(std::span<ReachingLight> light
     find_reaching_light(shading_.world.shading, std::span(corners).first(count), light.first(count));
 }
 
+/// Whether a surface's highlights are too small for one point of a fragment, or those of its bumps too many.
+bool has_small_highlights(const ShadeScene& scene, const Hit& hit, const MapTexels& texels) {
+    const SurfaceLook look = look_at(scene, hit, texels);
+    if (look.is_matt()) return false;
+    MapTexels even = texels;
+    even.normal_length = 1;
+    const double own = texels.normal_length < 1 ? look_at(scene, hit, even).roughness : look.roughness;
+    return own < kPolished || look.roughness > own + kWidened;
+}
+
 /// From the light at the shaded points to means over the samples.
 void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<const MapTexels> texels,
                                      std::span<Vec3> light) {
@@ -111,10 +122,10 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
 /// by more than a mean can tell; in blocks where it changes by less.
 void FragmentContributions::even_out_one(std::size_t i, const KnownLight& known, Vec3& light) {
     const SpreadContribution& contribution = waiting_[i];
-    const SurfaceLook look =
-        look_at(shading_.world.shading, *contribution.contribution().seen.hit, known.texels);
+    const Hit& hit = *contribution.contribution().seen.hit;
+    const SurfaceLook look = look_at(shading_.world.shading, hit, known.texels);
     const std::span<const std::uint8_t> numbers = contribution.corner_numbers();
-    bool by_sample = !look.is_matt() && look.roughness < kPolished;
+    bool by_sample = has_small_highlights(shading_.world.shading, hit, known.texels);
     ArrivedLight mean;
     for (const std::size_t number : numbers) {
         ReachingLight at = known.at_corners[number];
