@@ -107,7 +107,7 @@ bool is_finite(const LensRow& row) {
     bool finite = true;
     for (const double number :
          {row.side.curvature, row.side.conic, row.side.aperture, row.side.across_curvature,
-          row.side.across_conic, row.thickness, row.glass.index, row.glass.abbe, row.hole})
+          row.side.across_conic, row.thickness, row.glass.index, row.glass.abbe, row.hole, row.obscuration})
         finite = finite && std::isfinite(number);
     for (const LensPose* pose : {&row.before, &row.after})
         finite = finite && std::isfinite(dot(pose->shift, pose->shift)) &&
@@ -143,6 +143,9 @@ void check_prescription(const LensPrescription& lens) {
         if (!(row.hole >= 0)) fail(lens, row, "the radius of its hole is negative");
         if (row.hole > 0 && row.side.aperture > 0 && row.hole >= row.side.aperture)
             fail(lens, row, "its hole is as large as its aperture");
+        if (!(row.obscuration >= 0)) fail(lens, row, "the radius of its obscuration is negative");
+        if (row.obscuration > 0 && row.side.aperture > 0 && row.obscuration >= row.side.aperture)
+            fail(lens, row, "its obscuration is as large as its aperture");
         if (row.mirror && !row.glass.is_air()) fail(lens, row, "is a mirror, and has a glass of its own");
         const std::string fault = thickness_fault(row, media[i + 1], i + 1 == lens.rows.size(), centred);
         if (!fault.empty()) fail(lens, row, fault);
@@ -150,6 +153,24 @@ void check_prescription(const LensPrescription& lens) {
     if (!does_anything)
         throw InputError(lens.file, "",
                          "has no glass and no mirror: between its surfaces is nothing but air");
+}
+
+std::vector<LensObscuration> lens_obscurations(const LensPrescription& lens) {
+    constexpr double kShell = 1e-3;  // what a tessellated shell is off its surface is less
+    const std::vector<LensPose> poses = lens_poses(lens);
+    const std::vector<LensMedium> media = lens_media(lens);
+    std::vector<LensObscuration> shells;
+    for (std::size_t i = 0; i < lens.rows.size(); ++i) {
+        const LensRow& row = lens.rows[i];
+        const bool is_before = media[i].glass.is_air();
+        if (!(row.obscuration > 0) || (!is_before && (row.mirror || !media[i + 1].glass.is_air()))) continue;
+        const double gap = kShell * row.obscuration;
+        const bool below = is_before ? media[i].sense > 0 : media[i + 1].sense < 0;
+        LensSide side = row.side;
+        side.aperture = row.obscuration;
+        shells.push_back({i, poses[i] * along_axis(below ? -2 * gap : gap), {gap, side, side}});
+    }
+    return shells;
 }
 
 double vertex_of(const LensPrescription& lens, std::size_t row) {

@@ -49,6 +49,7 @@ struct LensRow {
     std::string place = {};  // where it stands, for messages: "line 12", "/surfaces/2"
     bool mirror = false;     // light stays in what it came through
     double hole = 0;         // radius of what it lets by in its middle
+    double obscuration = 0;  // radius of what stops light in its middle, on the side that air is on
     LensPose before = {};    // its frame in that which the row before it leads to
     LensPose after = {};     // the frame in which its thickness is measured, in its own
 };
@@ -126,6 +127,18 @@ struct LensElement {
 /// aperture, of which no body can be made (see lens_fault), of glass whose sides are tilted against each
 /// other, and of a mirror that lies on glass.
 std::vector<LensElement> lens_elements(const LensPrescription& lens);
+
+/// An opaque shell over a row's obscuration, with its front's vertex at the origin of its frame.
+struct LensObscuration {
+    std::size_t row = 0;
+    LensPose pose = {};
+    LensPrimitive shape = {};
+};
+
+/// All that can be made: between glass and glass there is no place for one. The shells are as thick as a
+/// thousandth of their radius, and as far from the surface, on the side that light comes from where air is
+/// there.
+std::vector<LensObscuration> lens_obscurations(const LensPrescription& lens);
 
 /// From the first surface's vertex to that of `row`, along the axis; tilts and decentres are not looked at.
 double vertex_of(const LensPrescription& lens, std::size_t row);

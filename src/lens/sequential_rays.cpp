@@ -52,7 +52,8 @@ std::optional<Ray> pass(const LensRow& row, const Ray& ray, double eta, Aperture
     if (!t) return std::nullopt;
     const Vec3 point = ray.origin + *t * ray.direction;
     const double s = point.x * point.x + point.y * point.y, rim = row.side.aperture;
-    if (apertures == ApertureRule::kGiven && ((rim > 0 && s > rim * rim) || s < row.hole * row.hole))
+    if (apertures == ApertureRule::kGiven &&
+        ((rim > 0 && s > rim * rim) || s < row.hole * row.hole || s < row.obscuration * row.obscuration))
         return std::nullopt;
     const Vec3 normal = normalize(Vec3(-sag_over(row.side, Vec2(point)).slope, 1));
     if (row.mirror) return Ray{point, ray.direction - 2 * dot(ray.direction, normal) * normal};

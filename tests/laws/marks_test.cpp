@@ -232,3 +232,40 @@ TEST_CASE("a splat at a fold ends, one of least weight is left out, and dispersi
         }
     CHECK(through > 0);
 }
+
+TEST_CASE("labels that give way are left out where they would cover others, by priority, then by depth",
+          "[marks][law]") {
+    // Places near each other, whose dots cover one another.
+    const auto placed_of = [](const std::vector<std::string>& more) {
+        std::string labels;
+        for (std::size_t i = 0; i < more.size(); ++i)
+            labels += (i ? ", " : "") + std::string(R"({"text": "label", "at": )") +
+                      text_of({-2 + 0.05 * static_cast<double>(i), 1.3, 0.1 * static_cast<double>(i)}) +
+                      R"(, "minWeight": 0.95, "dot": 40)" + more[i] + "}";
+        const auto world = world_from("labels", marked_room("", R"(, "labels": [)" + labels + "]"), 8);
+        PlacedMarks placed = place_marks(*world, {});
+        std::vector<FilmBox> boxes;
+        for (const PlacedMark& mark : placed.marks)
+            if (world->scene.labels[mark.entry].gives_way) boxes.push_back(label_box(*world, mark));
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(boxes[i].meets(boxes[k]));
+        return placed;
+    };
+    const std::string way = R"(, "givesWay": true)";
+    CHECK(placed_of({"", "", "", ""}).marks.size() == 4);
+    CHECK(placed_of({"", "", "", ""}).crowded_out == 0);
+    // The nearest one, the last, stays; of higher priority another one; and what does not give way before
+    // all.
+    const PlacedMarks by_depth = placed_of({way, way, way, way});
+    REQUIRE(by_depth.marks.size() == 1);
+    CHECK(by_depth.marks[0].entry == 3);
+    CHECK(by_depth.crowded_out == 3);
+    const PlacedMarks by_priority =
+        placed_of({way, way + R"(, "priority": 2)", way + R"(, "priority": 1)", way});
+    REQUIRE(by_priority.marks.size() == 1);
+    CHECK(by_priority.marks[0].entry == 1);
+    const PlacedMarks kept = placed_of({"", way + R"(, "priority": 9)", way, ""});
+    REQUIRE(kept.marks.size() == 2);
+    CHECK(kept.marks[0].entry + kept.marks[1].entry == 3);
+    CHECK(kept.crowded_out == 2);
+}

@@ -1,9 +1,10 @@
-// Biconic, toric and Q-type surfaces of lens files and of JSON.
+// Biconic, toric, Q-type and obscured surfaces of lens files and of JSON.
 #include <cmath>
 #include <string>
 
 #include "base/util/error.h"
 #include "lens/q_asphere.h"
+#include "lens/sequential_rays.h"
 #include "scene/formats/lens_file.h"
 #include "scene/read/read_lens.h"
 #include "scene/scene_text.h"
@@ -146,4 +147,27 @@ TEST_CASE("a scene's anamorphic sides are those of its bodies, and keys that dis
     CHECK(refused(R"("rotationRadius": 4, "radius": 9, "qbfs": [1])").starts_with("side: /qbfs: "));
     CHECK(refused(R"("profileAlong": "x")") == "side: /profileAlong: needs a rotationRadius beside it");
     CHECK(refused(R"("rotationRadius": 4, "profileAlong": "z")").starts_with("side: /profileAlong: "));
+}
+
+TEST_CASE("obscurations of lens files are black shells in the scene, and stop a spot's rays",
+          "[scene][lens]") {
+    CHECK(zemax("STANDARD", "  OBSC 0 2.5 0\n").rows[0].obscuration == 2.5);
+    const LensPrescription lens = code_v("CIR 8; CIR OBS 3");
+    CHECK(lens.rows[0].obscuration == 3);
+    const Spot open = spot_of(code_v("CIR 8"), {}), spot = spot_of(lens, {});
+    CHECK(spot.points.size() < open.points.size() - 20);
+    CHECK(spot.radius == Approx(open.radius).epsilon(0.05));
+    const Scene scene = load_text(
+        R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -9], "at": [0, 0, 0]}}], "lenses": [{"name": "t", "surfaces": [
+            {"radius": 9, "aperture": 1, "thickness": 1, "glass": "N-BK7", "obscuration": 0.4},
+            {"radius": -9, "aperture": 1, "thickness": 0.5, "glass": "N-SF6", "obscuration": 0.3},
+            {"radius": -30, "aperture": 1, "obscuration": 0.2}]}]})");
+    REQUIRE(scene.meshes.size() == 4);
+    CHECK(scene.meshes[2].name == "t/obscuration 1");
+    CHECK(scene.meshes[3].name == "t/obscuration 3");
+    CHECK(scene.meshes[2].role == Role::kObject);
+    for (const Vec3& p : scene.meshes[2].object.points) CHECK(p.z < p.x * p.x / 18 + p.y * p.y / 18);
+    REQUIRE(scene.warnings.size() == 1);
+    CHECK(scene.warnings[0] ==
+          "room.json: /lenses/0/surfaces/1: its obscuration is not drawn: it has glass on both sides");
 }

@@ -277,8 +277,9 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
     CHECK(
         code_v("CYL") ==
         "a.seq: line 4: CYL: conicoids, even aspheres, toric (YTO, XTO) and biconic (AAS) surfaces are read");
-    CHECK(code_v("CIR OBS 2") ==
-          "a.seq: line 4: CIR OBS: rims (CIR, CLR, EDG) and holes (HOL) are read, obscurations are not");
+    CHECK(code_v("CIR ROT 2") ==
+          "a.seq: line 4: CIR ROT: rims (CIR, CLR, EDG), holes (HOL) and obscurations (OBS) are read");
+    CHECK(code_v("CIR 9; CIR OBS 9") == "a.seq: line 3: its obscuration is as large as its aperture");
     CHECK(code_v("CIR Z2 5").starts_with("a.seq: line 4: CIR Z2: "));
     CHECK(code_v("CIR -5") == "a.seq: line 4: CIR is negative");
     CHECK(code_v("CIR EDG 9; CIR CLR 8; CIR HOL 2").empty());

@@ -123,8 +123,8 @@ TEST_CASE("a circular aperture of Zemax is its inner radius and its outer one, w
     CHECK(side("CLAP 0 8 0\r\n  DIAM 10 1") == Vec2(0, 8));
     CHECK(side("DIAM 10 1\r\n  CLAP 2 12 0\r\n  OBDC 0 0.0") == Vec2(2, 10));
     CHECK(side("DIAM 0 0\r\n  CLAP 2 12 0\r\n  FLAP 0 11 0") == Vec2(2, 12));
-    for (const std::string line :
-         {"OBDC 0 1", "OBSC 0 2 0", "SQAP 5 5 0", "ELAP 5 4 0", "SQOB 1 1 0", "ELOB 1 2 0", "SPID 0.5 3 0"}) {
+    for (const std::string line : {"OBDC 0 1", "OBSC 1 2 0", "OBSC 0 -2 0", "SQAP 5 5 0", "ELAP 5 4 0",
+                                   "SQOB 1 1 0", "ELOB 1 2 0", "SPID 0.5 3 0"}) {
         CAPTURE(line);
         const std::string place = "a.zmx: line 12: " + line.substr(0, 4) + ": ";
         CHECK(refusal(zemax_text("DIAM 10 1", "DIAM 10 1\r\n  " + line)).starts_with(place));

@@ -41,6 +41,8 @@ struct Label {
     Vec2 offset{8, 0};  // pixels right and down from the place to the left end of the text's middle line
     double dot = 5;     // pixels across, at the place; 0: none
     double min_weight = 0.1;                  // as PointCloud's
+    bool gives_way = false;                   // an image of it that would cover another label's is left out
+    double priority = 0;                      // of two that give way, the higher one stays
     std::shared_ptr<const TextMask> letters;  // null where nobody could draw them
 };
 

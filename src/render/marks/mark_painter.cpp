@@ -23,13 +23,7 @@ const TextMask* letters_of(const World& world, const PlacedMark& mark) {
 
 /// All that a mark may cover.
 PixelBox box_of(const World& world, const PlacedMark& mark) {
-    const Vec2 half(std::sqrt(mark.spread.xx), std::sqrt(mark.spread.yy));
-    Vec2 low = mark.pixel - half, high = mark.pixel + half;
-    if (const TextMask* letters = letters_of(world, mark)) {
-        const Vec2 corner = MarkPainter::text_corner(world, mark);
-        low = glm::min(low, corner - Vec2(kHalo));
-        high = glm::max(high, corner + Vec2(letters->width + kHalo, letters->height + kHalo));
-    }
+    const auto [low, high] = label_box(world, mark);
     const Film& film = world.scene.film;
     const auto whole = [](double at, int most) {
         return static_cast<int>(std::floor(std::clamp(at, -1.0, static_cast<double>(most))));
@@ -151,6 +145,17 @@ void MarkPainter::paint(int x, int y, Id shown, SampleColour& colour) const {
                       share, colour);
         if (letters_of(world_, mark)) paint_text(mark, Vec2(x, y), colour);
     }
+}
+
+FilmBox label_box(const World& world, const PlacedMark& mark) {
+    const Vec2 half(std::sqrt(mark.spread.xx), std::sqrt(mark.spread.yy));
+    FilmBox box{mark.pixel - half, mark.pixel + half};
+    if (const TextMask* letters = letters_of(world, mark)) {
+        const Vec2 corner = MarkPainter::text_corner(world, mark);
+        box.low = glm::min(box.low, corner - Vec2(kHalo));
+        box.high = glm::max(box.high, corner + Vec2(letters->width + kHalo, letters->height + kHalo));
+    }
+    return box;
 }
 
 }  // namespace trilens

@@ -59,7 +59,8 @@ struct PlacedMarks {
     std::size_t places = 0;   // points and labels
     std::size_t unseen = 0;   // of these, without any image that is drawn
     std::size_t unsized = 0;  // splats with a radius whose derivative is not known: as wide as `size` says
-    std::size_t cut = 0;      // splats that would be longer than kLongestSplat: at folds
+    std::size_t crowded_out = 0;  // images of labels that would have covered others, and give way
+    std::size_t cut = 0;          // splats that would be longer than kLongestSplat: at folds
 };
 
 /// Half of a splat's length, pixels: at folds, where the derivative is infinite, they end there.
@@ -68,6 +69,23 @@ inline constexpr double kLongestSplat = 64;
 /// Finds the images of all points and labels on the exact surfaces, as project does (project.h), whatever the
 /// frame's facets show. Throws as project_points does, and Interrupted.
 PlacedMarks place_marks(const World& world, const FrameParams& frame, const Progress& progress = {});
+
+/// A rectangle of the film, pixels.
+struct FilmBox {
+    Vec2 low{0}, high{0};
+
+    bool meets(const FilmBox& other) const {
+        return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y && other.low.y < high.y;
+    }
+};
+
+/// Where a label's letters and the halo around them lie, its dot too; a label without letters: its dot.
+FilmBox label_box(const World& world, const PlacedMark& mark);
+
+/// Leaves out images of labels that give way and would cover another label's: those that do not give way
+/// stand first, then those of higher priority, of these the nearer ones, and else those that the scene has
+/// first.
+void leave_out_crowded(const World& world, PlacedMarks& marks);
 
 /// What a picture of the world leaves out of its marks.
 void tell_marks(const World& world, const PlacedMarks& marks, const Warn& warn);

@@ -180,7 +180,9 @@ PlacedMarks place_marks(const World& world, const FrameParams& frame, const Prog
         placing.add({true, i, 0, label.dot, label.min_weight}, std::span(&label.place, 1),
                     std::span(&label.color, 1));
     }
-    return placing.take();
+    PlacedMarks placed = placing.take();
+    leave_out_crowded(world, placed);
+    return placed;
 }
 
 void tell_marks(const World& world, const PlacedMarks& marks, const Warn& warn) {
@@ -196,6 +198,9 @@ void tell_marks(const World& world, const PlacedMarks& marks, const Warn& warn) 
     if (marks.cut > 0)
         warn(fmt::format("{} images of points lie near folds: they are cut to {} pixels", marks.cut,
                          2 * kLongestSplat));
+    if (marks.crowded_out > 0)
+        warn(fmt::format("{} images of labels are left out: they would cover other labels",
+                         marks.crowded_out));
     if (!world.volumes.empty() || world.blended)
         warn("points and labels are not veiled by volumes and by what blends");
     if (has_rough_optics(world)) warn("points and labels are as sharp in rough optics as in smooth ones");

@@ -259,6 +259,7 @@ void SceneCheck::marks() const {
         const std::string place = "/labels/" + std::to_string(i);
         require(!label.style.text.empty(), place + "/text", "is empty");
         require(is_finite(label.place) && is_finite(label.color), place, "is not finite");
+        require(is_finite(label.priority), place + "/priority", "is not finite");
         require(is_finite(label.style.size) && label.style.size > 0, place + "/size", "must be above 0");
     }
 }

@@ -252,8 +252,10 @@ void add(const PointCloud& cloud, Digest& digest) {
 }
 
 void add(const Label& label, Digest& digest) {
-    [[maybe_unused]] const auto& [style, place, color, offset, dot, min_weight, letters] = label;
+    [[maybe_unused]] const auto& [style, place, color, offset, dot, min_weight, gives_way, priority,
+                                  letters] = label;
     digest.add_all(style.text, style.size, style.font, place, color, offset, dot, min_weight);
+    if (gives_way) digest.add(priority);  // keys of older sweeps stay
 }
 
 template <typename T>

@@ -267,12 +267,11 @@ class SequenceReader : LensLines {
     void set_aperture(const std::vector<std::string_view>& words) {
         LensRow& row = lens_.rows.back();
         const std::string of = words.size() > 2 ? in_capitals(words[1]) : "";
-        if (!of.empty() && of != "EDG" && of != "CLR" && of != "HOL")
-            fail("CIR " + of + ": rims (CIR, CLR, EDG) and holes (HOL) are read" +
-                 (of == "OBS" ? ", obscurations are not" : ""));
+        if (!of.empty() && of != "EDG" && of != "CLR" && of != "HOL" && of != "OBS")
+            fail("CIR " + of + ": rims (CIR, CLR, EDG), holes (HOL) and obscurations (OBS) are read");
         const double radius = number(words, of.empty() ? 1 : 2);
         if (radius < 0) fail("CIR is negative");
-        (of == "HOL" ? row.hole : row.side.aperture) = radius;
+        (of == "HOL" ? row.hole : of == "OBS" ? row.obscuration : row.side.aperture) = radius;
     }
 
     bool take_tilt(const std::string& key, const std::vector<std::string_view>& words, WrittenTilt& written) {

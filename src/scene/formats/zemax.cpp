@@ -14,8 +14,7 @@ namespace trilens {
 namespace {
 
 /// Apertures that are no circles about the vertex, and what stands in the light.
-constexpr std::string_view kApertures[] = {"OBSC", "SQAP", "SQOB", "ELAP", "ELOB",
-                                           "SPID", "UDAP", "UDOB", "USAP"};
+constexpr std::string_view kApertures[] = {"SQAP", "SQOB", "ELAP", "ELOB", "SPID", "UDAP", "UDOB", "USAP"};
 
 /// A file's surface, from object to image.
 struct ZemaxSurface {
@@ -110,6 +109,10 @@ class ZemaxReader : LensLines {
             surface.clear_radius = number(words, 2);
             if (!(row.hole >= 0 && surface.clear_radius > row.hole))
                 fail("CLAP has its inner radius, 0 or more, then a larger one");
+        } else if (key == "OBSC") {
+            row.obscuration = number(words, 2);
+            if (number(words, 1) != 0 || !(row.obscuration >= 0))
+                fail("OBSC: its inner radius must be 0, its outer one not negative");
         } else if (changes_aperture(words)) {
             surface.aperture_fault =
                 std::string(key) + ": circular apertures about the vertex (DIAM, CLAP) are read";

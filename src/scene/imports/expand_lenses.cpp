@@ -81,6 +81,31 @@ class Expansion {
         }
     }
 
+    /// Of rows whose obscuration has no place.
+    std::vector<const LensRow*> add_obscurations() {
+        const LensPrescription& lens = lens_.prescription;
+        const std::vector<LensObscuration> shells = lens_obscurations(lens);
+        for (const LensObscuration& shell : shells) {
+            const std::string name = lens_.name + "/obscuration " + std::to_string(shell.row + 1);
+            Json mesh{{"name", name}, {"role", "object"}, {"material", black_material()}};
+            mesh["primitive"] = {{"type", "lens"},
+                                 {"center", json_of(shell.pose.shift)},
+                                 {"axis", json_of(shell.pose.turn[2])},
+                                 {"tangent", json_of(shell.pose.turn[0])},
+                                 {"thickness", shell.shape.thickness},
+                                 {"front", side_json(shell.shape.front)},
+                                 {"back", side_json(shell.shape.back)},
+                                 {"segments", kRingSegments}};
+            add(std::move(mesh));
+        }
+        std::vector<const LensRow*> left_out;
+        for (std::size_t i = 0; i < lens.rows.size(); ++i)
+            if (lens.rows[i].obscuration > 0 &&
+                std::none_of(shells.begin(), shells.end(), [i](const auto& shell) { return shell.row == i; }))
+                left_out.push_back(&lens.rows[i]);
+        return left_out;
+    }
+
     /// False where the stop lies on glass; a mirror's rim is one by itself.
     bool add_stop() {
         const LensPrescription& lens = lens_.prescription;
@@ -118,6 +143,14 @@ class Expansion {
         return name;
     }
 
+    std::string black_material() {
+        std::string name = lens_.name + "/black";
+        if (!has_black_)
+            scene_["materials"].push_back({{"name", name}, {"baseColorFactor", {0, 0, 0}}, {"unlit", true}});
+        has_black_ = true;
+        return name;
+    }
+
     /// Its material's name, which is added where it is new. Glasses by numbers may share a name.
     std::string material_of(const Glass& glass) {
         std::size_t namesakes = 0;
@@ -142,7 +175,7 @@ class Expansion {
     const ReadLens& lens_;
     Json& scene_;
     std::vector<std::pair<Glass, std::string>> materials_;  // that were added
-    bool has_mirror_ = false;
+    bool has_mirror_ = false, has_black_ = false;
 };
 
 }  // namespace
@@ -166,14 +199,16 @@ void expand_lenses(Json& scene, Reading& reading) {
             if (node.has("surfaces")) throw;
             node["file"].fail(error.what());
         }
+        const auto warn_of = [&](const LensRow& row, const std::string& what) {
+            if (node.has("surfaces"))
+                reading.warn(row.place, what);
+            else
+                reading.warn(node["file"].place, row.place + ": " + what);
+        };
         for (const LensRow& row : lens.prescription.rows)
-            if (row.hole > 0 && !row.mirror) {
-                const std::string what = "its hole is not drawn: only mirrors have holes";
-                if (node.has("surfaces"))
-                    reading.warn(row.place, what);
-                else
-                    reading.warn(node["file"].place, row.place + ": " + what);
-            }
+            if (row.hole > 0 && !row.mirror) warn_of(row, "its hole is not drawn: only mirrors have holes");
+        for (const LensRow* row : expansion.add_obscurations())
+            warn_of(*row, "its obscuration is not drawn: it has glass on both sides");
         if (!expansion.add_stop()) reading.warn(node.place, "its stop lies on glass: no ring is made of it");
     }
 }

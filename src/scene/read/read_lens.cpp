@@ -143,7 +143,7 @@ namespace {
 
 struct WrittenRow {
     WrittenSide side = {.aperture = 0};
-    double thickness = 0, ior = 1, abbe = 0, hole = 0;
+    double thickness = 0, ior = 1, abbe = 0, hole = 0, obscuration = 0;
     bool stop = false, mirror = false;
     LensTilt tilt;
 };
@@ -190,6 +190,8 @@ const std::vector<Field<WrittenRow>>& row_fields() {
         list.push_back(
             setting("hole", &WrittenRow::hole, ref("notNegative"),
                     "Radius of a hole in a mirror's middle; other surfaces stop the light there."));
+        list.push_back(setting("obscuration", &WrittenRow::obscuration, ref("notNegative"),
+                               "Radius of what stops light in the surface's middle: a black shell over it."));
         for (const Field<LensTilt>& field : tilt_fields()) list.push_back(within(&WrittenRow::tilt, field));
         return list;
     }();
@@ -281,6 +283,7 @@ LensPrescription read_surfaces(const Node& surfaces, std::span<const Glass> glas
         row.place = node.place;
         row.mirror = written.mirror;
         row.hole = written.hole;
+        row.obscuration = written.obscuration;
         if (written.tilt.behind == AxisBehind::kBends && !written.mirror)
             node["axisBehind"].fail("bends behind mirrors alone");
         tilt_row(row, written.tilt);

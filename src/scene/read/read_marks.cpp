@@ -38,6 +38,10 @@ const std::vector<Field<Label>>& label_fields() {
         setting("dot", &Label::dot, number_in(0, 500), "Pixels across, at the place; 0: none."),
         setting("minWeight", &Label::min_weight, ref("share"),
                 "Images that carry a smaller share of the light in every colour are left out."),
+        setting("givesWay", &Label::gives_way, yes_or_no(),
+                "Whether images of it that would cover another label's are left out."),
+        setting("priority", &Label::priority, ref("number"),
+                "Of labels that give way the higher ones stay; of equal ones what is nearer."),
         part<Label>("font", some_text(), "A TrueType file; without it DejaVu Sans."),
     };
     return fields;

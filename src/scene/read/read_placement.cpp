@@ -106,6 +106,9 @@ const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
         segments.kinds = kinds_with<ObjectPrimitiveKind>([](const auto& kind) {
             return requires {
                 kind.radius;
+            }
+            || requires {
+                kind.front;
             };
         });
         return std::vector<Field<P>>{
