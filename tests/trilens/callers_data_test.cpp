@@ -349,27 +349,35 @@ TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]")
     only_errors("paraxial_ray", [] { paraxial_ray({}, {1, 1}); });
     only_errors("trace_lens", [] { trace_lens({}, {Vec3(0), Vec3(0)}); });
     for (const double x : kOddNumbers)
-        for (int field = 0; field < 11; ++field) {
+        for (int field = 0; field < 14; ++field) {
             LensPrescription lens{"odd", "odd", {}};
             lens.rows = {{{0.02, 0, {}, 10}, 4, {"glass", 1.5, 60}, true},
                          {{-0.02, 0, {}, 10}, 0, {}, false}};
             LensRow& row = lens.rows[0];
-            const std::array<double*, 9> numbers{&row.side.curvature,
-                                                 &row.side.conic,
-                                                 &row.side.aperture,
-                                                 &row.side.coefficients[1],
-                                                 &row.thickness,
-                                                 &row.glass.index,
-                                                 &row.glass.abbe,
-                                                 &row.side.normal_departures[0],
-                                                 &row.hole};
-            if (field == 10) lens.rows[1].mirror = true;
-            if (field > 8) tilt_row(row, {Vec3(x), Vec3(x), AxisBehind::kBends});
+            const std::array<double*, 12> numbers{&row.side.curvature,
+                                                  &row.side.conic,
+                                                  &row.side.aperture,
+                                                  &row.side.coefficients[1],
+                                                  &row.thickness,
+                                                  &row.glass.index,
+                                                  &row.glass.abbe,
+                                                  &row.side.normal_departures[0],
+                                                  &row.hole,
+                                                  &row.obscuration,
+                                                  &row.side.across_curvature,
+                                                  &row.side.across_conic};
+            row.side.form = field == 11 ? SideForm::kBiconic : SideForm::kRound;
+            if (field == 10) row.side.form = SideForm::kToricX;
+            if (field == 13) lens.rows[1].mirror = true;
+            if (field > 11) tilt_row(row, {Vec3(x), Vec3(x), AxisBehind::kBends});
             only_errors("lens_poses", [&] { lens_poses(lens); });
             only_errors("lens_media", [&] { lens_media(lens); });
             only_errors("is_centred", [&] { is_centred(lens); });
-            if (field < 9) *numbers[static_cast<std::size_t>(field)] = x;
+            if (field < 12) *numbers[static_cast<std::size_t>(field)] = x;
             only_errors("check_prescription", [&] { check_prescription(lens); });
+            only_errors("is_round", [&] { is_round(lens); });
+            only_errors("section_of", [&] { section_of(lens, LensSection::kX); });
+            only_errors("lens_obscurations", [&] { lens_obscurations(lens); });
             only_errors("index_at", [&] { index_at(row.glass, SpectralLine::kF); });
             only_errors("lens_elements", [&] { lens_elements(lens); });
             only_errors("first_order", [&] { first_order(lens); });
