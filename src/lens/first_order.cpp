@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "base/util/error.h"
 
@@ -69,7 +70,9 @@ FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
                                      central = paraxial_ray(lens, {0, 1}, line);
     const ParaxialPlace &a = parallel.back(), &b = central.back();
     if (a.slope == 0)
-        throw InputError(lens.file, "", "has no focal length: rays along the axis leave along the axis");
+        throw InputError(lens.file, "",
+                         std::string("has no focal length") + (is_round(lens) ? "" : " along y") +
+                             ": rays along the axis leave along the axis");
     const std::vector<double> index = signed_indices(lens_media(lens), line);
     FirstOrder first;
     first.focal_length = -1 / (index.back() * a.slope);

@@ -201,7 +201,6 @@ double reach_along(const LensSide& side, double sense) {
 /// A body whose side of that row reflects; light comes along the row's axis, or against it.
 LensElement mirror_body(const LensPrescription& lens, std::size_t index, const LensMedium& before) {
     const LensRow& row = lens.rows[index];
-    if (!before.glass.is_air()) fail(lens, row, "a mirror on glass is traced, but no body is made of it");
     const double reach = reach_along(row.side, before.sense);
     LensSide flat;
     flat.aperture = row.side.aperture;
@@ -216,8 +215,6 @@ LensElement mirror_body(const LensPrescription& lens, std::size_t index, const L
 /// The body between a row and the next one. Light may run against the axis.
 LensElement glass_body(const LensPrescription& lens, std::size_t index, const LensMedium& medium) {
     const LensRow *front = &lens.rows[index], *back = front + 1;
-    for (const LensRow* row : {front, back})
-        if (row->mirror) fail(lens, *row, "a mirror on glass is traced, but no body is made of it");
     const LensPose between = front->after * along_axis(front->thickness) * back->before;
     const LensPose off = along_axis(-front->thickness) * between;
     if (!is_identity(off, std::fabs(front->thickness)))
@@ -227,6 +224,23 @@ LensElement glass_body(const LensPrescription& lens, std::size_t index, const Le
     std::swap(body.shape.front, body.shape.back);
     body.pose = between;
     return body;
+}
+
+bool have_one_shape(const LensSide& a, const LensSide& b) {
+    return a.curvature == b.curvature && a.conic == b.conic && a.coefficients == b.coefficients &&
+           a.normal_departures == b.normal_departures && a.form == b.form &&
+           a.across_curvature == b.across_curvature && a.across_conic == b.across_conic;
+}
+
+/// Fails unless light leaves the glass before a mirror by the side that it came in by: that body is made.
+void check_way_back(const LensPrescription& lens, std::size_t mirror) {
+    const std::vector<LensPose> poses = lens_poses(lens);
+    const LensRow &row = lens.rows[mirror], &behind = lens.rows[mirror + 1];
+    const bool is_first = mirror > 0 && !lens.rows[mirror - 1].mirror;
+    const double size = std::fabs(row.thickness);
+    if (!is_first || behind.mirror || !have_one_shape(behind.side, lens.rows[mirror - 1].side) ||
+        !is_identity(inverse(poses[mirror - 1]) * poses[mirror + 1], size))
+        fail(lens, row, "light leaves its glass by another side than it came in by: no body is made of it");
 }
 
 }  // namespace
@@ -242,6 +256,7 @@ std::vector<LensElement> lens_elements(const LensPrescription& lens) {
         for (std::size_t k = i; k <= (is_glass ? i + 1 : i); ++k)
             if (!(lens.rows[k].side.aperture > 0))
                 fail(lens, lens.rows[k], "has no aperture, so no rim can be made");
+        if (is_mirror && is_glass) check_way_back(lens, i);
         LensElement body = is_mirror ? mirror_body(lens, i, media[i]) : glass_body(lens, i, media[i + 1]);
         const LensPrimitive& shape = body.shape;
         if (const char* fault = lens_fault(shape.front, shape.back, shape.thickness, shape.hole))

@@ -123,9 +123,10 @@ struct LensElement {
 };
 
 /// All bodies in order; those that are cemented have one side in common. A mirror's body is flat behind, and
-/// as thick there as a quarter of its aperture. Throws InputError with the place of a row that has no
-/// aperture, of which no body can be made (see lens_fault), of glass whose sides are tilted against each
-/// other, and of a mirror that lies on glass.
+/// as thick there as a quarter of its aperture; on glass (Mangin's) it has a side in common with it. Throws
+/// InputError with the place of a row that has no aperture, of which no body can be made (see lens_fault), of
+/// glass whose sides are tilted against each other, and of a mirror on glass that light leaves by another
+/// side than it came in by.
 std::vector<LensElement> lens_elements(const LensPrescription& lens);
 
 /// An opaque shell over a row's obscuration, with its front's vertex at the origin of its frame.

@@ -72,6 +72,17 @@ LensPrescription anamorphic_pair() {
     return lens;
 }
 
+/// A mirror on the back of a meniscus, of Mangin's kind.
+LensPrescription mangin() {
+    LensPrescription lens{"Mangin", "Mangin", {}};
+    lens.rows.resize(3);
+    lens.rows[0] = {{-0.01, 0, {}, 20}, 5, {"glass", 1.52, 0}};
+    lens.rows[1] = {{-0.0067, -0.3, {}, 20}, -5};
+    lens.rows[1].mirror = true;
+    lens.rows[2].side = lens.rows[0].side;
+    return lens;
+}
+
 /// A Cassegrain, of a hyperboloid and a paraboloid with a hole.
 LensPrescription cassegrain() {
     LensPrescription lens{"Cassegrain", "Cassegrain", {}};
@@ -158,12 +169,14 @@ TEST_CASE("rays through tilted and decentred bodies, by a mirror, are those of t
 TEST_CASE("rays through a lens' bodies are those of its prescription, cemented, aspheric or not",
           "[lens][law]") {
     for (const LensPrescription& lens :
-         {cooke_triplet(), double_gauss(), aspheric_singlet(), anamorphic_pair()}) {
+         {cooke_triplet(), double_gauss(), aspheric_singlet(), anamorphic_pair(), mangin()}) {
         CAPTURE(lens.name);
         const auto world = world_from("lens", scene_of(lens), 8);
         std::string word;  // a transmission for each surface of glass
         for (std::size_t i = 0; i < lens.rows.size(); ++i)
-            if (!lens.rows[i].glass.is_air() || (i > 0 && !lens.rows[i - 1].glass.is_air())) word += 'T';
+            if (!lens.rows[i].glass.is_air() || (i > 0 && !lens.rows[i - 1].glass.is_air()) ||
+                lens.rows[i].mirror || lens.name == "Mangin")
+                word += lens.rows[i].mirror ? 'R' : 'T';
         // So that none comes near the stop's ring, which has corners.
         LensPrescription narrow = lens;
         for (LensRow& row : narrow.rows) row.side.aperture *= 0.99;
