@@ -91,7 +91,10 @@ int main(int count_of_words, char** words) {
     if (std::filesystem::is_regular_file(words[2])) {
         Answer answer = Answer::kTaken;
         const std::string message = broken(*target, bytes_of(words[2]), answer);
-        std::puts(!message.empty() ? message.c_str() : answer == Answer::kRefused ? "refused" : "taken");
+        const std::string said = !message.empty()             ? message
+                                 : answer == Answer::kRefused ? "refused: " + last_refusal()
+                                                              : "taken";
+        std::puts(said.c_str());
         return message.empty() ? 0 : 1;
     }
     const std::uint64_t first = count_of_words > 3 ? number(words[3]) : 0;

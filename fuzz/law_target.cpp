@@ -42,7 +42,8 @@ Bytes drawn(const Renderer& renderer, const PictureRequest& request) {
     const Bytes one = encoded(renderer, request);
     set_thread_count(3);
     require(encoded(renderer, request) == one, "a picture depends on the number of threads");
-    require(renderer.draw_exr(request).bytes == one, "a picture that is encoded while it is drawn is another");
+    require(renderer.draw_exr(request).bytes == one,
+            "a picture that is encoded while it is drawn is another");
     set_thread_count(before);
     const std::vector<std::string> sets = kernel_instruction_sets();
     for (std::size_t i = 1; i < sets.size(); ++i) {

@@ -256,6 +256,10 @@ def studies():
         {"axis": "resolution", "values": "1..8:x2"}, {"axis": "engine", "values": ["exact", "facets"]}]}))
     write("test", "golden", text({"against": ["golden", "truth"], "tags": ["fast"], "fail": 0.01, "max": {"rmse": 0.1}}))
     write("test", "resolutions", text({"against": ["facets"], "resolution": [2, 4, 8], "set": {"/film/width": 16}}))
+    write("report", "plain", "ball\nlens\nTwo balls\ntrilens sweep run a.json\n")
+    write("report", "marked-up", "<b>ball</b>\n</script><script>alert(1)</script>\n<!-- \"&amp;' -->\n$(ls) | `ls` <tt>\n")
+    write("report", "alike", "all\nall\n\n\n")
+    write("report", "letters", "Spiegelkügelchen 球 \u202e\n,;\"\t\n\\%_&#{}\n{} {0} {1} {{\n")
     with tempfile.TemporaryDirectory() as place:
         (pathlib.Path(place) / "small.json").write_text(text(SMALL))
         subprocess.run([PROGRAM, "sweep", "run", "small.json", "--over", "resolution=1", "-o", "made", "-q"], check=True, cwd=place)
@@ -269,6 +273,7 @@ def random_bytes():
         write("laws", f"random{seed:02}", random.Random(seed).randbytes(160))
         if seed not in (4, 10):  # whose lights take many seconds
             write("caustics", f"random{seed:02}", random.Random(100 + seed).randbytes(160))
+        write("radiosity", f"random{seed:02}", random.Random(300 + seed).randbytes(160))
         write("terrain", f"random{seed:02}", random.Random(200 + seed).randbytes(400))
 
 

@@ -26,6 +26,8 @@ constexpr std::array kTargets{
     FuzzTarget{"pairs", "pairs of pixels and points", pairs_text},
     FuzzTarget{"png", "a texture", png_file},
     FuzzTarget{"points", "points as text or PLY", points_text},
+    FuzzTarget{"radiosity", "random scenes, their light baked", random_radiosity, true},
+    FuzzTarget{"report", "names, put into a sweep's report", sweep_report, true},
     FuzzTarget{"run", "a sweep's folder: manifest, plan, a run", run_folder},
     FuzzTarget{"scene", "a scene file", scene_text},
     FuzzTarget{"sweep", "a sweep file", sweep_file},

@@ -37,6 +37,12 @@ std::span<const FuzzTarget> fuzz_targets();
 /// Null where there is none of that name.
 const FuzzTarget* find_target(std::string_view name);
 
+/// Why the last input of this thread was refused.
+inline std::string& last_refusal() {
+    thread_local std::string message;
+    return message;
+}
+
 /// Runs `work`, which may refuse by trilens::Error alone, with a message of one line that says something.
 template <class Work>
 Answer answer(Work&& work) {
@@ -47,6 +53,7 @@ Answer answer(Work&& work) {
         const std::string message = error.what();
         require(!message.empty(), "a refusal says nothing");
         require(message.find('\n') == std::string::npos, "a refusal has more than one line: " + message);
+        last_refusal() = message;
         return Answer::kRefused;
     }
 }
@@ -70,6 +77,8 @@ Answer run_folder(std::string_view bytes);
 Answer random_scene(std::string_view bytes);
 Answer random_caustics(std::string_view bytes);
 Answer random_terrain(std::string_view bytes);
+Answer random_radiosity(std::string_view bytes);
+Answer sweep_report(std::string_view bytes);
 
 /// A folder of this process' own for the files that targets read, in memory where the system has that.
 const std::string& fuzz_folder();

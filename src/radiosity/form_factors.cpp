@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/raymesh/triangle_corners.h"
@@ -15,6 +16,9 @@ namespace {
 
 constexpr double kTurn = 2.39996322972865332;  // the golden angle: no two hemicubes of a few stand alike
 constexpr int kMostScalings = 1000;
+// Scaling ends where this many steps bring its worst row less than this share nearer: then no scaling fits.
+constexpr int kScalingsLooked = 20;
+constexpr double kLeastGain = 0.01;
 
 /// Evenly spread places on a triangle.
 Vec3 spread_weights(std::size_t i) {
@@ -203,6 +207,7 @@ FormFactorMatrix made_reciprocal(const FormFactorMatrix& matrix, std::span<const
         row.escaped = row.side.empty() ? 1 : matrix.rows[i].escaped;
     }
     std::vector<double> scale(count, 1);
+    double looked = std::numeric_limits<double>::infinity();
     for (int step = 0; step < kMostScalings; ++step) {
         double worst = 0;
         std::vector<double> next(count, 1);
@@ -217,13 +222,22 @@ FormFactorMatrix made_reciprocal(const FormFactorMatrix& matrix, std::span<const
             next[i] = sum > 0 ? scale[i] * std::sqrt(wanted / sum) : scale[i];
         }
         if (worst <= tolerance) break;
+        if (step % kScalingsLooked == 0) {
+            if (worst > (1 - kLeastGain) * looked) break;
+            looked = worst;
+        }
         scale = std::move(next);
     }
     for (Id i = 0; i < count; ++i) {
         FormFactorRow& row = result.rows[i];
         for (std::size_t k = 0; k < row.side.size(); ++k)
             row.factor[k] *= scale[i] * scale[row.side[k]] / area[i];
-        if (!row.side.empty()) row.escaped = std::max(0.0, 1 - row_sum(row));
+        if (row.side.empty()) continue;
+        // Where nothing fits both, no power is made rather than exchanges kept alike.
+        const double sum = row_sum(row);
+        if (sum > 1 + tolerance)
+            for (double& factor : row.factor) factor /= sum;
+        row.escaped = std::max(0.0, 1 - sum);
     }
     return result;
 }

@@ -89,7 +89,8 @@ FormFactorMatrix make_matrix(const FormFactors& factors, const Progress& progres
 /// The nearest that both keep reciprocity, A_i F_ij = A_j F_ji, and give away all that does not escape: means
 /// of both estimates, scaled by factors d_i d_j until each row's sum and its `escaped` make 1 within
 /// `tolerance` (Sinkhorn and Knopp's scaling, kept symmetric). `area`: of each side. A row all of whose
-/// others see nothing of it escapes as a whole.
+/// others see nothing of it escapes as a whole. Where no factors do that, as where few rays missed small
+/// sides, scaling ends once it brings no more, what rows lack escapes, and none gives away more than it has.
 FormFactorMatrix made_reciprocal(const FormFactorMatrix& matrix, std::span<const double> area,
                                  double tolerance = 1e-12);
 

@@ -139,6 +139,25 @@ TEST_CASE("form factors that are made reciprocal are, and still lose nothing", "
     CHECK(sum == Approx(6).margin(1e-6));  // the fronts' area: nothing escapes
 }
 
+TEST_CASE("form factors that nothing makes reciprocal still make no power", "[radiosity][law]") {
+    // Two small sides give all that they have to one that says that nearly all of its own escapes.
+    FormFactorMatrix drawn;
+    drawn.rows.resize(3);
+    drawn.rows[0] = {{1}, {0.05}, 0.95};
+    drawn.rows[1] = {{0, 2}, {0.3, 0.7}, 0};
+    drawn.rows[2] = {{1}, {1}, 0};
+    for (const double small : {1.0, 1e-3, 1e-9}) {
+        const FormFactorMatrix matrix = made_reciprocal(drawn, std::vector<double>{1, small, small});
+        for (const FormFactorRow& row : matrix.rows) {
+            INFO("small sides of " << small);
+            const double sum = std::accumulate(row.factor.begin(), row.factor.end(), 0.0);
+            CHECK(sum <= 1 + 1e-12);
+            CHECK(sum + row.escaped == Approx(1).margin(1e-9));
+            for (const double factor : row.factor) CHECK((factor >= 0 && std::isfinite(factor)));
+        }
+    }
+}
+
 TEST_CASE("a triangle without area sends nothing and is not seen", "[radiosity][bad-input]") {
     auto scene = std::make_shared<TriangleScene>(closed_cube(1));
     const auto first = static_cast<Id>(scene->points.size());

@@ -1,0 +1,80 @@
+// Fuzz target of reports: a sweep of two pictures whose names a stranger chose; its page shows them as text,
+// its tables read back.
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "fuzz/target.h"
+#include "trilens/scene.h"
+#include "trilens/sweep.h"
+
+using namespace trilens;
+namespace fs = std::filesystem;
+
+namespace trilens_fuzz {
+namespace {
+
+constexpr const char* kSmallScene = R"({ "version": 1, "film": { "width": 8, "height": 6 },
+  "cameras": [ { "name": "c", "type": "perspective", "yfov": 40, "lookAt": { "eye": [0, 0, 4], "at": [0, 0, 0] } } ],
+  "materials": [ { "name": "chrome", "metallicFactor": 1 }, { "name": "white", "unlit": true } ],
+  "meshes": [ { "name": "a", "role": "optic", "material": "chrome", "primitive": { "type": "sphere" } },
+              { "name": "b", "role": "optic", "material": "chrome",
+                "primitive": { "type": "sphere", "center": [1.5, 0, 0], "radius": 0.5 } },
+              { "name": "wall", "role": "object", "material": "white", "points": [[-9,-9,9],[9,-9,9],[9,9,9],[-9,9,9]],
+                "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] } ] })";
+
+std::string text_of(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The parts between line ends, at most `count` of them.
+template <std::size_t count>
+std::array<std::string, count> lines_of(std::string_view bytes) {
+    std::array<std::string, count> lines;
+    for (std::string& line : lines) {
+        const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+        line = bytes.substr(0, end);
+        bytes.remove_prefix(std::min(end + 1, bytes.size()));
+    }
+    return lines;
+}
+
+/// All names begin so: in a page that shows them as text it does not stand as it is.
+constexpr const char* kMark = "7q<";
+
+void require_escaped(const std::string& page) {
+    require(page.find("</html>") != std::string::npos, "a report without an end");
+    require(page.find(kMark) == std::string::npos, "a page has a name in it that it did not escape");
+    require(page.find("7q&lt;") != std::string::npos, "a page without the names");
+}
+
+}  // namespace
+
+Answer sweep_report(std::string_view bytes) {
+    const auto [first, second, title, command] = lines_of<4>(bytes);
+    SweepRequest request;
+    request.folder = fuzz_folder() + "/sweep";
+    fs::remove_all(request.folder);
+    return answer([&] {
+        Scene scene = parse_scene(kSmallScene);
+        scene.meshes[0].name = kMark + first;
+        scene.meshes[1].name = kMark + second;
+        request.loaded = scene;
+        request.over = {{"resolution", {"1", "2"}}};
+        request.title = kMark + title;
+        request.command = kMark + command;
+        const SweepSummary made = run_sweep(request);
+        require(made.runs.size() == 2, "a sweep of two pictures has not two");
+        const std::string table = text_of(request.folder + "/runs.csv");
+        require_escaped(text_of(request.folder + "/report.html"));
+        const SweepSummary read = report_sweep(request.folder);
+        require(read.runs.size() == made.runs.size(), "a sweep's folder reads back as another");
+        require(text_of(request.folder + "/runs.csv") == table, "a table is another once it is read");
+        require_escaped(text_of(request.folder + "/report.html"));
+    });
+}
+
+}  // namespace trilens_fuzz
