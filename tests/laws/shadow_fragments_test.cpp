@@ -14,7 +14,7 @@ namespace {
 
 /// A floor under a row of bars, `width` of them in world units, in a lamp's light; a pixel is 0.075 wide
 /// there.
-std::unique_ptr<World> fenced_floor(double width) {
+std::unique_ptr<World> fenced_floor(double width, int samples = 4) {
     std::string bars;
     for (int k = -12; k <= 12; ++k)
         bars += R"(,{"name": "bar)" + std::to_string(k) +
@@ -22,7 +22,9 @@ std::unique_ptr<World> fenced_floor(double width) {
                 std::to_string(0.27 * k + 0.013) + R"(, 1.2, 0], "size": [)" + std::to_string(width) +
                 ", 0.01, 5]}}";
     return world_from("fence",
-                      R"({"version": 1, "film": {"width": 64, "height": 48, "spp": 4},
+                      R"({"version": 1, "film": {"width": 64, "height": 48, "spp": )" +
+                          std::to_string(samples) +
+                          R"(},
         "cameras": [{"name": "main", "yfov": 40, "lookAt": {"eye": [0.2, 1, 4.6], "at": [0, 0, 0], "up": [0, 1, 0]}}],
         "materials": [{"name": "grey", "baseColorFactor": [0.8, 0.8, 0.8]}],
         "lights": [{"type": "directional", "direction": [-0.3, -1, -0.2], "intensity": 3, "shadows": true},
@@ -74,4 +76,11 @@ TEST_CASE("shadows and terminators inside pixels: what fragments miss of them", 
         CHECK(std::fabs(found.bias) < limit.bias);
         CHECK(found.shaded_by_sample > 0.02);
     }
+}
+
+TEST_CASE("fragments of few samples show what each of their samples does", "[laws][law][fragments]") {
+    const Missed found = missed(*fenced_floor(0.025, 2));
+    INFO("mean " << found.mean << ", pixels " << found.pixels);
+    CHECK(found.pixels == 0);
+    CHECK(found.mean < 1e-6);
 }

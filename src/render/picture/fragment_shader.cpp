@@ -22,6 +22,8 @@ constexpr double kWholeRoom = 0.25, kPartRoom = 0.05, kBlockRoom = 0.06;
 // Shaded sample by sample: surfaces of less roughness, whose highlights are small, and those whose bumps
 // inside a fragment make up for more of it, which one wider lobe shows in the wrong places.
 constexpr double kPolished = 0.3, kWidened = 0.05;
+// So many samples are lit at no more places than the shaded point and the outermost of them.
+constexpr std::size_t kFewSamples = kCorners + 1;
 
 /// Contributions of several fragments, shaded together.
 class FragmentContributions {
@@ -38,13 +40,16 @@ class FragmentContributions {
     void shade();
 
   private:
-    void even_out(std::span<const ReachingLight> centre, std::span<const MapTexels> texels,
-                  std::span<Vec3> light);
+    bool is_few(const SpreadContribution& one) const {
+        return is_spread(one) && one.sample_count() <= kFewSamples && !shading_.world.shading.caustic;
+    }
+    void shade_few(std::span<Vec3> light) const;
+    void shade_at_points(std::span<Vec3> light);
     bool is_spread(const SpreadContribution& one) const {
         const Hit& hit = *one.contribution().seen.hit;
         return hit.seen() && !one.corners().empty() && is_lit(shading_.world.shading, hit);
     }
-    void find_light_at_corners(std::span<ReachingLight> light) const;
+    void find_light_at_corners(std::span<const std::size_t> points, std::span<ReachingLight> light) const;
     /// What is known of a fragment's light, and what its pictures show.
     struct KnownLight {
         const ReachingLight& centre;
@@ -52,7 +57,8 @@ class FragmentContributions {
         const MapTexels& texels;
     };
     void even_out_one(std::size_t i, const KnownLight& known, Vec3& light);
-    Vec3 mean_of_parts(std::span<const LitPart> parts) const;
+    Vec3 mean_of_parts(std::span<const SpreadContribution::Part> parts,
+                       std::span<const ReachingLight> at_corners) const;
 
     const FragmentShading& shading_;
     std::vector<SpreadContribution> waiting_;
@@ -66,18 +72,26 @@ Vec3 arriving(SurfaceLook look, const ArrivedLight& arrived) {
     return outgoing_radiance(look, arrived);
 }
 
+SeenAlong along(const SpreadContribution::Part& part) {
+    SeenAlong seen{&part.there.hit, &part.there.ray, &part.texels};
+    seen.without_caustics = true;
+    return seen;
+}
+
 /// The mean over a pixel's samples of a function that is quadratic, less its value at the centre, as a share
 /// of the mean over the four samples at the corners less that.
 double corner_share(int side) {
     return (side + 1.0) / (3.0 * (side - 1));
 }
 
-/// The light at all corners of all that has come together and is lit, one after the other.
-void FragmentContributions::find_light_at_corners(std::span<ReachingLight> light) const {
+/// The light at all corners of those of `points` that are lit, one after the other.
+void FragmentContributions::find_light_at_corners(std::span<const std::size_t> points,
+                                                  std::span<ReachingLight> light) const {
     std::array<SeenAlong, kMostShaded * kCorners> corners;
     std::vector<MapTexels> texels;  // where pictures say how light comes; stay in place
     std::size_t count = 0;
-    for (const SpreadContribution& one : waiting_) {
+    for (const std::size_t i : points) {
+        const SpreadContribution& one = waiting_[i];
         if (!is_spread(one)) continue;
         const bool has_maps = has_light_maps(shading_.world.shading, *one.contribution().seen.hit);
         if (has_maps) texels.reserve(corners.size());
@@ -102,22 +116,6 @@ bool has_small_highlights(const ShadeScene& scene, const Hit& hit, const MapTexe
     return own < kPolished || look.roughness > own + kWidened;
 }
 
-/// From the light at the shaded points to means over the samples.
-void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<const MapTexels> texels,
-                                     std::span<Vec3> light) {
-    std::array<ReachingLight, kMostShaded * kCorners> at_corners;
-    find_light_at_corners(at_corners);
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < waiting_.size(); ++i) {
-        if (!is_spread(waiting_[i])) continue;
-        const Vec3 caustic = centre[i].caustic;  // a mean over all of them already
-        if (caustic != Vec3(0)) light[i] -= caustic;
-        even_out_one(i, {centre[i], std::span(at_corners).subspan(first), texels[i]}, light[i]);
-        if (caustic != Vec3(0)) light[i] += caustic;
-        first += waiting_[i].corners().size();
-    }
-}
-
 /// Samples are lit one by one where other lights reach the outermost than the shaded point, or light changes
 /// by more than a mean can tell; in blocks where it changes by less.
 void FragmentContributions::even_out_one(std::size_t i, const KnownLight& known, Vec3& light) {
@@ -138,8 +136,9 @@ void FragmentContributions::even_out_one(std::size_t i, const KnownLight& known,
     by_sample = by_sample || is_beyond(whole ? kWholeRoom : kPartRoom);
     const bool has_blocks = whole && shading_.side > 2 && shading_.side % 2 == 0;
     if (by_sample || (has_blocks && is_beyond(kBlockRoom))) {
-        const std::vector<LitPart> parts = contribution.parts(by_sample ? 1 : 2, known.texels);
-        if (!parts.empty()) light = mean_of_parts(parts);
+        const std::vector<SpreadContribution::Part> parts =
+            contribution.parts(by_sample ? 1 : 2, known.texels);
+        if (!parts.empty()) light = mean_of_parts(parts, known.at_corners);
         shaded_[i]->rays_by_sample += by_sample;
     } else if (whole && numbers.size() == kCorners) {
         for (int k = 0; k < 3; ++k)
@@ -149,40 +148,85 @@ void FragmentContributions::even_out_one(std::size_t i, const KnownLight& known,
     }
 }
 
-/// The mean of what its parts show, each lit by itself.
-Vec3 FragmentContributions::mean_of_parts(std::span<const LitPart> parts) const {
+/// The mean of what its parts show, each lit by itself; where one is a corner, its light is known.
+Vec3 FragmentContributions::mean_of_parts(std::span<const SpreadContribution::Part> parts,
+                                          std::span<const ReachingLight> at_corners) const {
     const ShadeScene& scene = shading_.world.shading;
     std::vector<SeenAlong> seen;
-    for (const LitPart& part : parts) {
-        seen.push_back({&part.there.hit, &part.there.ray, &part.texels});
-        seen.back().without_caustics = true;
-    }
+    for (const SpreadContribution::Part& part : parts)
+        if (part.corner == kCorners) seen.push_back(along(part));
     std::vector<ReachingLight> light(seen.size());
     find_reaching_light(scene, seen, light);
     Vec3 sum(0);
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        sum += outgoing_radiance(look_at(scene, parts[i].there.hit, parts[i].texels), light[i].arrived);
+    std::size_t asked = 0;
+    for (const SpreadContribution::Part& part : parts) {
+        const ReachingLight& there = part.corner == kCorners ? light[asked++] : at_corners[part.corner];
+        sum += outgoing_radiance(look_at(scene, part.there.hit, part.texels), there.arrived);
+    }
     return sum / double(parts.size());
+}
+
+/// Those of few samples: each sample by itself, at once.
+void FragmentContributions::shade_few(std::span<Vec3> light) const {
+    std::vector<SpreadContribution::Part> parts;
+    std::vector<std::size_t> of;  // part -> fragment
+    std::array<double, kMostShaded> count{};
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        if (!is_few(waiting_[i])) continue;
+        const std::vector<SpreadContribution::Part> own =
+            waiting_[i].parts(1, texels_at(shading_.world.shading, waiting_[i].contribution().seen));
+        parts.insert(parts.end(), own.begin(), own.end());
+        of.insert(of.end(), own.size(), i);
+        count[i] = double(own.size());
+        light[i] = Vec3(0);
+    }
+    std::vector<SeenAlong> seen;
+    for (const SpreadContribution::Part& part : parts) seen.push_back(along(part));
+    std::vector<Vec3> shown(parts.size());
+    shade_rays(shading_.world.shading, seen, shown);
+    for (std::size_t k = 0; k < parts.size(); ++k) light[of[k]] += shown[k] / count[of[k]];
+}
+
+/// The others: from the light at the shaded points to means over their samples.
+void FragmentContributions::shade_at_points(std::span<Vec3> light) {
+    std::array<SeenAlong, kMostShaded> seen;
+    std::array<MapTexels, kMostShaded> texels;
+    std::array<Vec3, kMostShaded> shown;
+    std::array<ReachingLight, kMostShaded> centre{};
+    std::vector<std::size_t> points;
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        if (is_few(waiting_[i])) continue;
+        const std::size_t k = points.size();
+        points.push_back(i);
+        seen[k] = waiting_[i].contribution().seen;
+        const std::optional<MapTexels> mean = waiting_[i].mean_texels();
+        texels[k] = mean ? *mean : texels_at(shading_.world.shading, seen[k]);
+        seen[k].texels = &texels[k];
+        seen[k].footprint = waiting_[i].footprint();
+    }
+    shade_rays(shading_.world.shading, std::span(seen).first(points.size()),
+               std::span(shown).first(points.size()), std::span(centre).first(points.size()));
+    std::array<ReachingLight, kMostShaded * kCorners> at_corners;
+    find_light_at_corners(points, at_corners);
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const std::size_t i = points[k];
+        light[i] = shown[k];
+        if (!is_spread(waiting_[i])) continue;
+        const Vec3 caustic = centre[k].caustic;  // a mean over all of them already
+        if (caustic != Vec3(0)) light[i] -= caustic;
+        even_out_one(i, {centre[k], std::span(at_corners).subspan(first), texels[k]}, light[i]);
+        if (caustic != Vec3(0)) light[i] += caustic;
+        first += waiting_[i].corners().size();
+    }
 }
 
 /// Adds what has come together to its fragments, in the order in which it came.
 void FragmentContributions::shade() {
-    const std::size_t count = waiting_.size();
-    std::array<SeenAlong, kMostShaded> seen;
-    std::array<MapTexels, kMostShaded> texels;
     std::array<Vec3, kMostShaded> light;
-    std::array<ReachingLight, kMostShaded> reaching{};
-    for (std::size_t i = 0; i < count; ++i) {
-        seen[i] = waiting_[i].contribution().seen;
-        const std::optional<MapTexels> mean = waiting_[i].mean_texels();
-        texels[i] = mean ? *mean : texels_at(shading_.world.shading, seen[i]);
-        seen[i].texels = &texels[i];
-        seen[i].footprint = waiting_[i].footprint();
-    }
-    shade_rays(shading_.world.shading, std::span(seen).first(count), std::span(light).first(count),
-               std::span(reaching).first(count));
-    even_out(std::span(reaching).first(count), std::span(texels).first(count), std::span(light).first(count));
-    for (std::size_t i = 0; i < count; ++i)
+    shade_few(light);
+    shade_at_points(light);
+    for (std::size_t i = 0; i < waiting_.size(); ++i)
         add_light(shading_.world, waiting_[i].contribution(), light[i], shaded_[i]->colour);
     waiting_.clear();
 }

@@ -37,7 +37,8 @@ struct FragmentShading {
 
 /// Colours of fragments, the means over their samples. Where a sample stands is told by its facet's map,
 /// drawn inside the triangle that all of them see.
-/// - Light is asked for at the shaded point and at the outermost samples, at most four. Where other lights
+/// - Fragments of up to five samples are lit at each, where no light comes over optics. Of the others light
+///   is asked for at the shaded point and at the outermost samples, at most four. Where other lights
 ///   reach those, or light differs by much, each sample is lit by itself, with what its textures show there;
 ///   where it differs by less, blocks of 2 x 2 samples are. Over a whole pixel it is else the mean of the
 ///   quadratic that goes through them all.

@@ -71,7 +71,7 @@ void SpreadContribution::find_corners() {
     std::array<Vec2, kCorners> places;
     places.fill(Vec2(0));
     if (fragment_.members.empty()) {
-        const double low = 0.5 / side, high = 1 - low;
+        const double low = 0.5 / side, high = (side - 0.5) / side;
         places = {Vec2(low, low), Vec2(high, low), Vec2(low, high), Vec2(high, high)};
     } else {
         std::array<int, kCorners> most;
@@ -210,13 +210,17 @@ void SpreadContribution::set_means_of_samples(MapTexels& texels) const {
               sum.occlusion / all, texels.normal,      of_normals / all};
 }
 
-std::vector<LitPart> SpreadContribution::parts(int step, const MapTexels& plain) const {
+std::vector<SpreadContribution::Part> SpreadContribution::parts(int step, const MapTexels& plain) const {
     const bool has_pictures = has_texture(shading_.world.shading, *contribution_.seen.hit);
-    std::vector<LitPart> parts;
+    std::vector<Part> parts;
     const auto add = [&](const Vec2& lit, const Vec2& middle) {
         const std::optional<SeenThere> there = at(lit), seen = lit == middle ? there : at(middle);
         if (!there || !seen) return;
         parts.push_back({*there, plain});
+        const auto known = std::span(corner_places_).first(corner_count_);
+        const auto corner = std::find(known.begin(), known.end(), middle);
+        if (step == 1 && corner != known.end())
+            parts.back().corner = static_cast<std::size_t>(corner - known.begin());
         if (has_pictures) parts.back().texels = texels_over(*seen, square(step), map_.differential(middle));
     };
     if (step == 1) {

@@ -19,16 +19,17 @@ struct SeenThere {
     Ray ray;
 };
 
-/// A part of a fragment that is lit by itself: where light is asked for, and what pictures show over it.
-struct LitPart {
-    SeenThere there;
-    MapTexels texels;
-};
-
 /// One contribution to a fragment, with what its samples see.
 class SpreadContribution {
   public:
     static constexpr std::size_t kCorners = 4;
+
+    /// A part of a fragment that is lit by itself: where light is asked for, and what pictures show over it.
+    struct Part {
+        SeenThere there;
+        MapTexels texels;
+        std::size_t corner = kCorners;  // that it is, in corners(); kCorners: none
+    };
 
     SpreadContribution(const FragmentShading& shading, const ShownFragment& fragment,
                        const Contribution& contribution);
@@ -62,7 +63,7 @@ class SpreadContribution {
     /// Its samples, each by itself; with a `step` of 2, of a whole pixel whose side is even, blocks of 2 x 2
     /// of them, light at one of the four. Those that see nothing by its map are left out. `plain`: what a
     /// material without pictures shows.
-    std::vector<LitPart> parts(int step, const MapTexels& plain) const;
+    std::vector<Part> parts(int step, const MapTexels& plain) const;
     /// Sides of the parallelogram on the surface that its samples stand for; null where it is not known.
     const std::array<Vec3, 2>* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
