@@ -1,5 +1,7 @@
 // Blended surfaces inside bodies of glass: against sums by hand, dimmed by what the glass absorbs before
 // them, once where they lie on its surface, and the same for projector and truth.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -112,6 +114,27 @@ TEST_CASE("a blended pane on a face of glass counts once, and as outside", "[law
     const auto inside =
         world_from("block", veiled_glass(kEyeInBlock, wide_block("glass") + upright_sheet("veil", -0.5)), 3);
     check_block(*inside, left_in_block(0.9) * laid_over(0.25, 1, 0.1));
+}
+
+TEST_CASE("a blended pane close to a face of glass counts once, whatever lies far away", "[laws][law]") {
+    for (const double inset : {0.1, 1e-3, 1e-5, 1e-7, 3e-9, 1e-10, -1e-10, -3e-9, -1e-7, -1e-3})
+        for (const double side : {1.0, -1.0})
+            for (const double far : {0.0, 1e5, 2e6}) {
+                const double z = side * (0.5 - inset);
+                std::string pane = upright_sheet("veil", 0, 60);
+                pane.replace(pane.find("[0, 0, 0.000000]"), 16, fmt::format("[0, 0, {:.17g}]", z));
+                if (far > 0)
+                    pane +=
+                        fmt::format(R"(, {{"name": "far", "role": "object", "material": "smoke", "primitive":
+                        {{"type": "plane", "center": [{}, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0],
+                          "size": [1, 1]}}}})",
+                                    far);
+                const auto world =
+                    world_from("block", veiled_glass(kEyeBeforeBlock, wide_block("glass") + pane), 3);
+                INFO("inset " << inset << ", side " << side << ", far " << far);
+                const double way = std::clamp(side > 0 ? inset : 1 - inset, 0.0, 1.0);
+                check_block(*world, left_in_block(way) * laid_over(0.25, 1, left_in_block(1 - way) * 0.1));
+            }
 }
 
 TEST_CASE("a camera that stands in glass sees the blended panes there", "[laws][law]") {

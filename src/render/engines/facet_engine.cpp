@@ -271,7 +271,7 @@ void FacetViewer::view_layers_in_glass(SampleViews& views) const {
             const Material* glass = glass_around(world_, views.around_of(view));
             const double first = up_to_first(view);
             views.volumes[s].first = trace_layers(
-                world_, view.ray, view.optic != kNone ? up_to_optic(first, glass) : first, glass);
+                world_, view.ray, view.optic != kNone ? up_to_optic(view.ray, first, glass) : first, glass);
         }
     });
 }

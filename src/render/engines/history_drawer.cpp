@@ -173,7 +173,10 @@ void HistoryDrawer::draw_volumes(Id index, const FacetSamples& owned, std::span<
     for_each_owned([&](Id f, std::size_t i, const Vec3& share) {
         const Id s = owned.sample[i];
         const double seen = hits[s].seen() ? hits[s].t : std::numeric_limits<double>::infinity();
-        until[s] = is_end[i] ? seen : std::min(up_to_optic(up_to_next(index, f, share), glass), seen);
+        const double next = up_to_next(index, f, share);
+        until[s] = is_end[i]
+                       ? seen
+                       : std::min(up_to_optic(interpolated_ray(node.mesh, f, share), next, glass), seen);
     });
     (*engine_.volumes)({node.mesh, owned, grid_, until, glass}, light);
     for_each_owned([&](Id f, std::size_t i, const Vec3& share) {

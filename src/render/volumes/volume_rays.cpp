@@ -90,6 +90,11 @@ void dim_by_glass(const Material& glass, const Ray& ray, std::span<const Hit> cr
 
 }  // namespace
 
+double up_to_optic(const Ray& ray, double next, const Material* glass) {
+    if (!glass || !std::isfinite(next)) return next;
+    return next - 2 * same_place(ray.origin + next * ray.direction) / length(ray.direction);
+}
+
 VolumeLight trace_layers(const World& world, const Ray& ray, double until, const Material* glass) {
     if (!world.blended) return glass ? VolumeLight() : trace_volumes(world, ray, until);
     const std::vector<Hit> crossings =
@@ -114,7 +119,7 @@ VolumeLight trace_layers(const World& world, const Ray& ray, double until, const
 
 VolumeLight trace_layers(const World& world, const PathSegment& segment) {
     const Material* glass = glass_of(world, segment.medium);
-    const double until = !segment.ends        ? up_to_optic(segment.next, glass)
+    const double until = !segment.ends        ? up_to_optic(segment.ray, segment.next, glass)
                          : segment.hit.seen() ? segment.hit.t
                                               : std::numeric_limits<double>::infinity();
     return trace_layers(world, segment.ray, until, glass);

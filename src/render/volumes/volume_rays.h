@@ -31,13 +31,10 @@ std::vector<CellStretch> trace_cells(const VolumeGeometry& volume, const Ray& ra
 /// The light of all volumes along a ray, its cells by trace_cells.
 VolumeLight trace_volumes(const World& world, const Ray& ray, double until);
 
-/// Of t: what lies no farther than this before the surface where a ray leaves glass is outside.
-inline constexpr double kOnGlass = 1e-8;
-
-/// Where a leg of a path up to an optic ends for what lies in layers on its way. `glass`: that it runs in.
-inline double up_to_optic(double next, const Material* glass) {
-    return glass ? next * (1 - kOnGlass) : next;
-}
+/// Where a leg of a path up to an optic at t = next ends for what lies in layers on its way. `glass`: that it
+/// runs in; twice the distance within which two places are one, so that what lies on the body's surface is
+/// outside.
+double up_to_optic(const Ray& ray, double next, const Material* glass);
 
 /// The light of all volumes and blended surfaces along a ray; surfaces by Embree's tree, and, where there are
 /// any, cells, too. In glass volumes are none, and it dims what surfaces add by their distance; what lies on

@@ -11,8 +11,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kOnEdge = 1e-9;          // weights of less lie on a triangle's edge
-constexpr double kSamePlaceShare = 1e-9;  // of the largest coordinate
+constexpr double kOnEdge = 1e-9;  // weights of less lie on a triangle's edge
 
 std::vector<Box> boxes_of(const TriangleScene& scene) {
     std::vector<Box> boxes(scene.size());
@@ -37,10 +36,6 @@ bool is_same_place(const TriangleScene& scene, const Hit& a, const Hit& b) {
 BlendedSurfaces::BlendedSurfaces(TriangleScene triangles, ShadeScene shading)
     : triangles_(std::move(triangles)), shading_(std::move(shading)), tree_(boxes_of(triangles_)) {
     shading_.triangles = &triangles_;
-    for (const Vec3& point : triangles_.points)
-        same_place_ =
-            std::max(same_place_, kSamePlaceShare *
-                                      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}));
 }
 
 void BlendedSurfaces::set_up(const ShadeSurroundings& others) {
@@ -59,16 +54,18 @@ bool BlendedSurfaces::is_seen_by(const Ray& ray, Id triangle) const {
 }
 
 std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const {
-    return crossings_from(-same_place_ / length(ray.direction), ray, until);
+    return crossings_from(-same_place(ray.origin) / length(ray.direction), ray, until);
 }
 
 std::vector<Hit> BlendedSurfaces::crossings_in_glass(const Ray& ray, double until) const {
-    return crossings_from(same_place_ / length(ray.direction), ray, until);
+    return crossings_from(same_place(ray.origin) / length(ray.direction), ray, until);
 }
 
 std::vector<Hit> BlendedSurfaces::crossings_from(double from, const Ray& ray, double until) const {
     std::vector<Hit> hits;
-    const double most = until + kDepthTie * until;
+    const double most = std::isfinite(until)
+                            ? until + same_place(ray.origin + until * ray.direction) / length(ray.direction)
+                            : until;
     const ShearedRay sheared(ray);
     tree_.visit(ray, std::min(from, 0.0), most, [&](Id triangle) {
         if (const auto met = sheared.meet(corners_of(triangles_, triangle)))
