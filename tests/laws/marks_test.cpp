@@ -1,7 +1,9 @@
 // Points and labels on pictures: balls that are drawn as splats against the same balls traced by rays, what
 // hides them, and that nothing else of a picture changes.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
 
@@ -244,11 +246,13 @@ TEST_CASE("labels that give way are left out where they would cover others, by p
                       R"(, "minWeight": 0.95, "dot": 40)" + more[i] + "}";
         const auto world = world_from("labels", marked_room("", R"(, "labels": [)" + labels + "]"), 8);
         PlacedMarks placed = place_marks(*world, {});
-        std::vector<FilmBox> boxes;
+        std::vector<std::array<FilmBox, 2>> boxes;
         for (const PlacedMark& mark : placed.marks)
-            if (world->scene.labels[mark.entry].gives_way) boxes.push_back(label_box(*world, mark));
+            if (world->scene.labels[mark.entry].gives_way) boxes.push_back(mark_boxes(*world, mark));
         for (std::size_t i = 0; i < boxes.size(); ++i)
-            for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(boxes[i].meets(boxes[k]));
+            for (std::size_t k = 0; k < i; ++k)
+                for (const FilmBox& one : boxes[i])
+                    for (const FilmBox& other : boxes[k]) CHECK_FALSE(one.meets(other));
         return placed;
     };
     const std::string way = R"(, "givesWay": true)";
@@ -268,4 +272,35 @@ TEST_CASE("labels that give way are left out where they would cover others, by p
     REQUIRE(kept.marks.size() == 2);
     CHECK(kept.marks[0].entry + kept.marks[1].entry == 3);
     CHECK(kept.crowded_out == 2);
+}
+
+TEST_CASE("between its dot and letters far from it a label leaves room for others that give way",
+          "[marks][law]") {
+    const auto placed_of = [](const std::string& offset, const std::string& second) {
+        const std::string way = R"("minWeight": 0.95, "size": 8, "dot": 6, "givesWay": true)";
+        const auto world = world_from(
+            "offsets",
+            marked_room("", R"(, "labels": [{"text": "far", "at": [-2.3, 1.3, 0], "priority": 1, )" + way +
+                                R"(, "offset": )" + offset + R"(}, {"text": "i", "offset": [4, 0], "at": )" +
+                                second + ", " + way + "}]"),
+            8);
+        for (Label& label : world->scene.labels)
+            label.letters = std::make_shared<const TextMask>(TextMask{12, 8, std::vector<float>(96, 1)});
+        return place_marks(*world, {});
+    };
+    // The camera looks down a little: these are pixels to a few percent.
+    const double pixel = 2 * 5.1 * std::tan(22.5 * std::numbers::pi / 180) / 120;
+    const auto below = [&](double pixels) { return text_of(Vec3(-2.3, 1.3 - pixels * pixel, 0)); };
+    const PlacedMarks between = placed_of("[0, 60]", below(30));
+    CHECK(between.marks.size() == 2);
+    CHECK(between.crowded_out == 0);
+    for (const double at : {0.0, 60.0}) {
+        const PlacedMarks on = placed_of("[0, 60]", below(at));
+        CAPTURE(at);
+        CHECK(on.marks.size() == 1);
+        CHECK(on.crowded_out == 1);
+    }
+    // Off the film there is nothing to cover, however far.
+    for (const std::string far : {"[1e6, -1e6]", "[-1e6, 1e6]", "[0, 1e6]"})
+        CHECK(placed_of(far, below(30)).marks.size() == 2);
 }

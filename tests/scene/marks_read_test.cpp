@@ -201,6 +201,10 @@ TEST_CASE("clouds and labels that are none are refused with their place", "[scen
     CHECK(contains(marks_refusal(R"("labels": [{"text": "a"}])"), "/labels/0"));
     CHECK(contains(marks_refusal(R"("labels": [{"text": "a", "at": [0,0,0], "size": 1000}])"),
                    "/labels/0/size"));
+    for (const std::string offset : {"[1.1e6, 0]", "[0, 1, 2]", "[0]"})
+        CHECK(contains(marks_refusal(R"("labels": [{"text": "a", "at": [0,0,0], "offset": )" + offset + "}]"),
+                       "/labels/0/offset"));
+    CHECK(marks_refusal(R"("labels": [{"text": "a", "at": [0,0,0], "offset": [-1e6, 1e6]}])").empty());
     const std::string folder = scratch_dir("marks_refused");
     std::ofstream(folder + "/five.csv") << "1,2,3,4,5\n";
     std::ofstream(folder + "/dark.csv") << "1,2,3,4,5,6\n1,2,3,-1,0,0\n";

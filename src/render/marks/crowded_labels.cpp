@@ -1,5 +1,6 @@
 // Labels that lie on one another: which of them a picture leaves out.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -10,10 +11,13 @@
 namespace trilens {
 namespace {
 
-/// Boxes by the tiles that they reach into: what meets one is found without asking all.
+/// Boxes on the film by the tiles that they reach into: what meets one is found without asking all.
 class TakenBoxes {
   public:
-    bool meets(const FilmBox& box) const {
+    explicit TakenBoxes(const Film& film) : film_{Vec2(0), Vec2(film.width, film.height)} {}
+
+    bool meets(const FilmBox& whole) const {
+        const FilmBox box = whole.common(film_);
         bool found = false;
         for_each_tile(box, [&](const std::pair<int, int>& tile) {
             const auto taken = of_tile_.find(tile);
@@ -23,18 +27,21 @@ class TakenBoxes {
         });
         return found;
     }
-    void add(const FilmBox& box) {
+    void add(const FilmBox& whole) {
+        const FilmBox box = whole.common(film_);
         for_each_tile(box, [&](const std::pair<int, int>& tile) { of_tile_[tile].push_back(box); });
     }
 
   private:
     template <typename Body>
     static void for_each_tile(const FilmBox& box, const Body& body) {
+        if (box.is_empty()) return;
         constexpr double kSide = 64;
         const auto tile = [](double at) { return static_cast<int>(std::floor(at / kSide)); };
         for (int y = tile(box.low.y); y <= tile(box.high.y); ++y)
             for (int x = tile(box.low.x); x <= tile(box.high.x); ++x) body(std::pair(x, y));
     }
+    FilmBox film_;
     std::map<std::pair<int, int>, std::vector<FilmBox>> of_tile_;
 };
 
@@ -44,6 +51,9 @@ void leave_out_crowded(const World& world, PlacedMarks& marks) {
     const auto label_of = [&world](const PlacedMark& mark) -> const Label& {
         return world.scene.labels[mark.entry];
     };
+    if (std::none_of(marks.marks.begin(), marks.marks.end(),
+                     [&](const PlacedMark& mark) { return mark.is_label && label_of(mark).gives_way; }))
+        return;
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < marks.marks.size(); ++i)
         if (marks.marks[i].is_label) order.push_back(i);
@@ -54,13 +64,14 @@ void leave_out_crowded(const World& world, PlacedMarks& marks) {
         if (of_a.priority != of_b.priority) return of_a.priority > of_b.priority;
         return a.distance != b.distance ? a.distance < b.distance : a.entry < b.entry;
     });
-    TakenBoxes taken;
+    TakenBoxes taken(world.scene.film);
     std::vector<char> is_out(marks.marks.size(), 0);
     for (const std::size_t i : order) {
-        const FilmBox box = label_box(world, marks.marks[i]);
-        is_out[i] = label_of(marks.marks[i]).gives_way && taken.meets(box);
+        const std::array<FilmBox, 2> boxes = mark_boxes(world, marks.marks[i]);
+        is_out[i] = label_of(marks.marks[i]).gives_way && (taken.meets(boxes[0]) || taken.meets(boxes[1]));
         if (is_out[i]) ++marks.crowded_out;
-        if (!is_out[i]) taken.add(box);
+        if (is_out[i]) continue;
+        for (const FilmBox& box : boxes) taken.add(box);
     }
     if (marks.crowded_out == 0) return;
     std::vector<PlacedMark> kept;

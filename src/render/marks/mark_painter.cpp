@@ -23,7 +23,8 @@ const TextMask* letters_of(const World& world, const PlacedMark& mark) {
 
 /// All that a mark may cover.
 PixelBox box_of(const World& world, const PlacedMark& mark) {
-    const auto [low, high] = label_box(world, mark);
+    const std::array<FilmBox, 2> boxes = mark_boxes(world, mark);
+    const Vec2 low = glm::min(boxes[0].low, boxes[1].low), high = glm::max(boxes[0].high, boxes[1].high);
     const Film& film = world.scene.film;
     const auto whole = [](double at, int most) {
         return static_cast<int>(std::floor(std::clamp(at, -1.0, static_cast<double>(most))));
@@ -147,15 +148,14 @@ void MarkPainter::paint(int x, int y, Id shown, SampleColour& colour) const {
     }
 }
 
-FilmBox label_box(const World& world, const PlacedMark& mark) {
+std::array<FilmBox, 2> mark_boxes(const World& world, const PlacedMark& mark) {
     const Vec2 half(std::sqrt(mark.spread.xx), std::sqrt(mark.spread.yy));
-    FilmBox box{mark.pixel - half, mark.pixel + half};
-    if (const TextMask* letters = letters_of(world, mark)) {
-        const Vec2 corner = MarkPainter::text_corner(world, mark);
-        box.low = glm::min(box.low, corner - Vec2(kHalo));
-        box.high = glm::max(box.high, corner + Vec2(letters->width + kHalo, letters->height + kHalo));
-    }
-    return box;
+    const FilmBox dot{mark.pixel - half, mark.pixel + half};
+    const TextMask* letters = letters_of(world, mark);
+    if (!letters) return {dot, FilmBox{mark.pixel, mark.pixel}};
+    const Vec2 corner = MarkPainter::text_corner(world, mark);
+    return {dot,
+            FilmBox{corner - Vec2(kHalo), corner + Vec2(letters->width + kHalo, letters->height + kHalo)}};
 }
 
 }  // namespace trilens

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -74,15 +75,20 @@ PlacedMarks place_marks(const World& world, const FrameParams& frame, const Prog
 struct FilmBox {
     Vec2 low{0}, high{0};
 
-    bool meets(const FilmBox& other) const {
-        return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y && other.low.y < high.y;
+    bool is_empty() const { return !(low.x < high.x && low.y < high.y); }
+    FilmBox common(const FilmBox& other) const {
+        return {glm::max(low, other.low), glm::min(high, other.high)};
     }
+    /// What is empty meets nothing.
+    bool meets(const FilmBox& other) const { return !common(other).is_empty(); }
 };
 
-/// Where a label's letters and the halo around them lie, its dot too; a label without letters: its dot.
-FilmBox label_box(const World& world, const PlacedMark& mark);
+/// Where a mark's ellipse or dot lies, and a label's letters with the halo around them; what it lacks is an
+/// empty box at its place.
+std::array<FilmBox, 2> mark_boxes(const World& world, const PlacedMark& mark);
 
-/// Leaves out images of labels that give way and would cover another label's: those that do not give way
+/// Leaves out images of labels that give way and whose letters or dot would cover another label's on the
+/// film: those that do not give way
 /// stand first, then those of higher priority, of these the nearer ones, and else those that the scene has
 /// first.
 void leave_out_crowded(const World& world, PlacedMarks& marks);

@@ -27,13 +27,25 @@ const std::vector<Field<PointCloud>>& point_cloud_fields() {
     return fields;
 }
 
+namespace {
+
+/// On or far off any film: what is computed of them stays exact to a small part of a pixel.
+Json pixel_offset() {
+    constexpr double kMost = 1e6;
+    Json pair = list_of(number_in(-kMost, kMost), 2);
+    pair["maxItems"] = 2;
+    return pair;
+}
+
+}  // namespace
+
 const std::vector<Field<Label>>& label_fields() {
     static const std::vector<Field<Label>> fields{
         within(&Label::style, setting("text", &TextStyle::text, some_text())).without_default(),
         setting("at", &Label::place, ref("vec3")).without_default(),
         setting("color", &Label::color, ref("color")),
         within(&Label::style, setting("size", &TextStyle::size, number_in(4, 500), "Pixels, of a line.")),
-        setting("offset", &Label::offset, ref("vec2"),
+        setting("offset", &Label::offset, pixel_offset(),
                 "Pixels right and down from the place to the left end of the text's middle line."),
         setting("dot", &Label::dot, number_in(0, 500), "Pixels across, at the place; 0: none."),
         setting("minWeight", &Label::min_weight, ref("share"),
