@@ -18,13 +18,16 @@ class Overwritten {
     Overwritten() = default;
     explicit Overwritten(std::size_t size) { resize(size); }
 
-    /// What was there is lost where this is more than there was ever room for.
+    /// What was there is lost where this is more than there was ever room for; where there is no memory for
+    /// it, nothing is left.
     void resize(std::size_t size) {
+        if (size > room_) {
+            size_ = room_ = 0;
+            bytes_ = nullptr;
+            bytes_ = std::make_unique_for_overwrite<std::byte[]>(size * sizeof(T));
+            room_ = size;
+        }
         size_ = size;
-        if (size <= room_) return;
-        bytes_ = nullptr;
-        bytes_ = std::make_unique_for_overwrite<std::byte[]>(size * sizeof(T));
-        room_ = size;
     }
 
     std::size_t size() const { return size_; }

@@ -1,0 +1,24 @@
+// Room that is overwritten: what is left of it where there is no memory.
+#include <cstdint>
+#include <new>
+
+#include "base/util/overwritten.h"
+#include "support/test.h"
+
+using namespace trilens;
+
+TEST_CASE("overwritten room that finds no memory is empty, and may be asked again", "[base]") {
+    Overwritten<std::uint8_t> room(4);
+    room[3] = 7;
+    room.resize(2);
+    CHECK(room.size() == 2);
+    room.resize(4);
+    CHECK(room[3] == 7);
+    CHECK_THROWS_AS(room.resize(PTRDIFF_MAX), std::bad_alloc);
+    CHECK(room.size() == 0);
+    CHECK(room.begin() == room.end());
+    room.resize(5);
+    room[4] = 9;
+    CHECK(room.size() == 5);
+    CHECK(room[4] == 9);
+}
