@@ -153,6 +153,9 @@ void check_prescription(const LensPrescription& lens) {
     if (!does_anything)
         throw InputError(lens.file, "",
                          "has no glass and no mirror: between its surfaces is nothing but air");
+    for (const LensObscuration& shell : lens_obscurations(lens))
+        if (const char* fault = lens_fault(shell.shape.front, shell.shape.back, shell.shape.thickness))
+            fail(lens, lens.rows[shell.row], std::string("no obscuration can be made of it: ") + fault);
 }
 
 std::vector<LensObscuration> lens_obscurations(const LensPrescription& lens) {

@@ -58,6 +58,12 @@ TEST_CASE("biconics and toroids of Zemax files have their radii and terms", "[sc
           "a.zmx: line 8: PARM 3 is not read of surfaces of type BICONICX");
     CHECK(refusal_of([] { zemax("TOROIDAL", "  PARM 9 1\n"); }) ==
           "a.zmx: line 8: PARM 9 is not read of surfaces of type TOROIDAL");
+    CHECK(refusal_of([] { zemax("TOROIDAL", "  PARM 1.5 33\n"); }) ==
+          "a.zmx: line 8: PARM 1.5 is not read of surfaces of type TOROIDAL");
+    CHECK(refusal_of([] { zemax("BICONICX", "  PARM 0 33\n"); }) ==
+          "a.zmx: line 8: PARM 0 is not read of surfaces of type BICONICX");
+    CHECK(refusal_of([] { zemax("TOROIDAL", "  PARM 2 1e-3\n  PARM 2 1e-3\n"); }) ==
+          "a.zmx: line 9: PARM 2: the surface has it already, in line 8");
     CHECK(refusal_of([] { zemax("TOROIDAL", "  XDAT 1 4 0 0\n"); }) ==
           "a.zmx: line 8: XDAT 1 is not read of surfaces of type TOROIDAL");
 }
@@ -82,6 +88,19 @@ TEST_CASE("Q-type aspheres of Zemax files are those of the polynomials", "[scene
     CHECK(refused("  XDAT 1 1 0 0\n  XDAT 2 1.5 0 0\n").find("no whole number") != std::string::npos);
     CHECK(refused("  XDAT 1 1 0 0\n  XDAT 2 9 0 0\n  XDAT 3 9 0 0\n  XDAT 11 1e-3 0 0\n") ==
           "a.zmx: line 11: XDAT 11 is beyond r^16");
+    const std::string kind = "  XDAT 1 1 0 0\n";
+    for (const std::string index : {"4.5", "0", "-1", "2.5"}) {
+        CAPTURE(index);
+        CHECK(refused(kind + extra + "  XDAT " + index + " 1e-3 0 0\n") ==
+              "a.zmx: line 13: XDAT " + index + " is not read of surfaces of type QED_TYPE");
+    }
+    CHECK(refused(kind + extra + "  XDAT 7 1e-3 0 0\n") ==
+          "a.zmx: line 13: XDAT 7 is beyond the number of terms (XDAT 2)");
+    CHECK(refused(kind + extra + "  XDAT 7 0 0 0\n").empty());
+    CHECK(refused(kind + extra + "  XDAT 6 1e-3 0 0\n") ==
+          "a.zmx: line 13: XDAT 6: the surface has it already, in line 12");
+    CHECK(refused(kind + extra + "  PARM 1 1e-3\n") ==
+          "a.zmx: line 13: PARM 1 is not read of surfaces of type QED_TYPE");
 }
 
 TEST_CASE("toric and anamorphic surfaces of CODE V have their radii and terms", "[scene][lens]") {
@@ -103,11 +122,19 @@ TEST_CASE("toric and anamorphic surfaces of CODE V have their radii and terms", 
     CHECK(both.conic == -0.5);
     CHECK(both.across_conic == 1.5);
     const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
-    CHECK(refused("RDX 80") ==
-          "a.seq: line 3: RDX, CUX and KX are read of toric and biconic surfaces (YTO, "
-          "XTO, AAS)");
-    CHECK(refused("YTO; KX 1") == "a.seq: line 3: KX is read of biconic surfaces (AAS)");
-    CHECK(refused("AAS; A 1e-6") == "a.seq: line 3: A to G are not of an anamorphic asphere (AAS)");
+    CHECK(refused("K 0\nRDX 80") ==
+          "a.seq: line 5: RDX and CUX are read of toric and biconic surfaces (YTO, XTO, AAS)");
+    const std::string of_biconic = "KX and KY are read of biconic surfaces (AAS)";
+    for (const std::string words : {"YTO\nKX 1", "\nKX 1", "\nKY 1", "XTO\nKY 1", "SPH\nKY 0"}) {
+        CAPTURE(words);
+        CHECK(refused(words) == "a.seq: line 5: " + of_biconic);
+    }
+    CHECK(refused("AAS; RDX 80\nA 1e-6") == "a.seq: line 5: A to G are not of an anamorphic asphere (AAS)");
+    CHECK(refused("K 0\nAAS; KX 1") == "a.seq: line 5: AAS needs RDX or CUX");
+    CHECK(refused("YTO; RDX 80\nXTO") == "a.seq: line 5: XTO: the surface has a form already, YTO in line 4");
+    CHECK(refused("YTO; RDX 80\nSPH") == "a.seq: line 5: SPH: the surface has a form already, YTO in line 4");
+    CHECK(refused("ASP; A 1e-6\nAAS; RDX 80").starts_with("a.seq: line 5: AAS: the surface has a form"));
+    CHECK(refused("ASP; A 1e-6; ASP").empty());
     CHECK(refused("AAS; BR 1e-6") ==
           "a.seq: line 4: BR: of an anamorphic asphere (AAS) its conic sections are read");
     CHECK(refused("YTO S1") ==
@@ -170,4 +197,28 @@ TEST_CASE("obscurations of lens files are black shells in the scene, and stop a 
     REQUIRE(scene.warnings.size() == 1);
     CHECK(scene.warnings[0] ==
           "room.json: /lenses/0/surfaces/1: its obscuration is not drawn: it has glass on both sides");
+}
+
+TEST_CASE("obscurations too large for their side are refused with their row's place",
+          "[scene][lens][bad-input]") {
+    // A radius of 50, without a DIAM on that side.
+    const std::string shell =
+        "no obscuration can be made of it: its aperture reaches to where the side turns back";
+    CHECK(refusal_of([] { code_v("CIR OBS 60"); }) == "a.seq: line 3: " + shell);
+    CHECK(refusal_of([] {
+              parse_lens(
+                  "MODE SEQ\nSURF 0\n  DISZ INFINITY\nSURF 1\n  CURV 0.02\n  OBSC 0 60 0\n"
+                  "  DISZ 4\n  GLAS N-BK7\nSURF 2\n  DISZ 0\nSURF 3\n",
+                  "a.zmx");
+          }) == "a.zmx: line 4: " + shell);
+    const std::string surfaces =
+        R"({"surfaces": [{"radius": 9, "thickness": 1, "aperture": 1, "glass": "N-BK7"},
+            {"radius": -3, "obscuration": 4}]})";
+    CHECK(refusal_of([&] { parse_lens(surfaces, "a.json"); }) == "a.json: /surfaces/1: " + shell);
+    CHECK(
+        refusal_of([&] {
+            load_text(
+                R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -9], "at": [0, 0, 0]}}], "lenses": [)" +
+                std::string(surfaces).insert(1, R"("name": "t", )") + "]}");
+        }) == "room.json: /lenses/0/surfaces/1: " + shell);
 }

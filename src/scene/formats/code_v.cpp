@@ -15,8 +15,9 @@ namespace trilens {
 namespace {
 
 /// Commands of a surface that are read, but for its terms (A to J) and tilts.
-constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR", "STO", "K",  "DAR",
-                                              "BEN", "REV", "YTO", "XTO", "AAS", "RDX", "CUX", "KX", "KY"};
+constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR", "STO",
+                                              "K",   "DAR", "BEN", "REV", "YTO", "XTO", "AAS",
+                                              "RDX", "CUX", "KX",  "KY",  "SPH", "CON", "ASP"};
 
 /// What an anamorphic asphere has beyond its two conic sections.
 constexpr std::string_view kAnamorphicTerms[] = {"AR", "BR", "CR", "DR", "AP", "BP", "CP", "DP"};
@@ -38,9 +39,21 @@ struct WrittenTilt {
     std::string place = {};  // of the last command that says something
 };
 
-/// What a surface says of its section along x.
-struct WrittenX {
-    std::optional<double> curvature = {}, conic = {};
+/// Forms of surfaces: a surface has one.
+constexpr std::pair<std::string_view, SideForm> kForms[] = {
+    {"SPH", SideForm::kRound},  {"CON", SideForm::kRound},  {"ASP", SideForm::kRound},
+    {"YTO", SideForm::kToricY}, {"XTO", SideForm::kToricX}, {"AAS", SideForm::kBiconic}};
+
+/// What only some forms have, with its command's place.
+struct WrittenNumber {
+    double value = 0;
+    std::string place = {};
+};
+
+/// What a surface says of its form.
+struct WrittenForm {
+    std::string name = {}, place = {};
+    std::optional<WrittenNumber> x_curvature = {}, x_conic = {}, y_conic = {}, term = {};
 };
 
 /// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
@@ -85,7 +98,7 @@ class SequenceReader : LensLines {
             throw InputError(lens_.file, "", "has no surfaces from SO to SI: it is no CODE V sequence");
         for (std::size_t i = 0; i < lens_.rows.size(); ++i) {
             bend(lens_.rows[i], tilts_[i]);
-            set_form(lens_.rows[i], x_of_rows_[i]);
+            set_form(lens_.rows[i], forms_[i]);
         }
         if (object_tilt_.tilt.decentre != Vec3(0) || object_tilt_.tilt.degrees != Vec3(0))
             throw InputError(lens_.file, object_tilt_.place,
@@ -143,7 +156,7 @@ class SequenceReader : LensLines {
         LensRow& row = lens_.rows.emplace_back();
         row.place = place();
         tilts_.emplace_back();
-        x_of_rows_.emplace_back();
+        forms_.emplace_back();
         if (words.size() > 1) set_curvature(number(words, 1), by_curvature_);
         if (words.size() > 2) row.thickness = number(words, 2);
         if (words.size() > 3) set_glass(words[3]);
@@ -171,18 +184,45 @@ class SequenceReader : LensLines {
 
     /// What stands of x and of y is known at the end alone. A profile along x has RDX or CUX, and is turned
     /// at RDY or CUY.
-    void set_form(LensRow& row, const WrittenX& x) const {
+    void set_form(LensRow& row, const WrittenForm& written) const {
         LensSide& side = row.side;
-        if (is_round(side) && (x.curvature || x.conic))
-            throw InputError(lens_.file, row.place,
-                             "RDX, CUX and KX are read of toric and biconic surfaces (YTO, XTO, AAS)");
-        if (!is_round(side) && side.form != SideForm::kBiconic && x.conic.value_or(0) != 0)
-            throw InputError(lens_.file, row.place, "KX is read of biconic surfaces (AAS)");
-        side.across_curvature = x.curvature.value_or(0);
-        side.across_conic = x.conic.value_or(0);
+        const bool is_biconic = side.form == SideForm::kBiconic;
+        const auto refuse = [&](const std::optional<WrittenNumber>& number, const std::string& why) {
+            if (number) throw InputError(lens_.file, number->place, why);
+        };
+        if (is_round(side))
+            refuse(written.x_curvature, "RDX and CUX are read of toric and biconic surfaces (YTO, XTO, AAS)");
+        if (!is_biconic)
+            for (const auto* conic : {&written.x_conic, &written.y_conic})
+                refuse(*conic, "KX and KY are read of biconic surfaces (AAS)");
+        if (is_biconic) refuse(written.term, "A to G are not of an anamorphic asphere (AAS)");
+        if (is_biconic && !written.x_curvature)
+            throw InputError(lens_.file, written.place, "AAS needs RDX or CUX");
+        if (written.x_curvature) side.across_curvature = written.x_curvature->value;
+        if (written.x_conic) side.across_conic = written.x_conic->value;
+        if (written.y_conic) side.conic = written.y_conic->value;
         if (side.form == SideForm::kToricX) std::swap(side.curvature, side.across_curvature);
-        if (side.form == SideForm::kBiconic && has_coefficients(side))
-            throw InputError(lens_.file, row.place, "A to G are not of an anamorphic asphere (AAS)");
+    }
+
+    /// False where the command names none. Which of two forms would hold is not known here.
+    bool take_form(const std::string& key) {
+        WrittenForm& form = forms_.back();
+        for (const auto& [name, kind] : kForms) {
+            if (name != key) continue;
+            if (!form.name.empty() && form.name != key)
+                fail(key + ": the surface has a form already, " + form.name + " in " + form.place);
+            form.name = key;
+            form.place = place();
+            lens_.rows.back().side.form = kind;
+            return true;
+        }
+        return false;
+    }
+
+    void take_term(const std::string& key, double value) {
+        const std::size_t term = kTerms.find(key[0]);
+        lens_.rows.back().side.coefficients[term + 1] = value;
+        if (value != 0) forms_.back().term = WrittenNumber{value, place()};
     }
 
     /// "NSK16_SCHOTT", "'MINE'": quotes and the maker's name are left out, and the hyphen behind N or P is
@@ -229,7 +269,9 @@ class SequenceReader : LensLines {
     }
 
     void take_of_surface(const std::string& key, const std::vector<std::string_view>& words) {
+        if (take_form(key)) return;
         LensRow& row = lens_.rows.back();
+        WrittenForm& form = forms_.back();
         if (key == "RDY")
             set_curvature(number(words, 1), false);
         else if (key == "CUY")
@@ -244,20 +286,14 @@ class SequenceReader : LensLines {
             set_aperture(words);
         else if (key == "STO")
             row.stop = true;
-        else if (key == "K" || key == "KY")
+        else if (key == "K")
             row.side.conic = number(words, 1);
-        else if (key == "YTO")
-            row.side.form = SideForm::kToricY;
-        else if (key == "XTO")
-            row.side.form = SideForm::kToricX;
-        else if (key == "AAS")
-            row.side.form = SideForm::kBiconic;
         else if (key == "RDX" || key == "CUX")
-            x_of_rows_.back().curvature = curvature_of(number(words, 1), key == "CUX");
-        else if (key == "KX")
-            x_of_rows_.back().conic = number(words, 1);
+            form.x_curvature = WrittenNumber{curvature_of(number(words, 1), key == "CUX"), place()};
+        else if (key == "KX" || key == "KY")
+            (key == "KX" ? form.x_conic : form.y_conic) = WrittenNumber{number(words, 1), place()};
         else if (key.size() == 1 && kTerms.find(key[0]) != std::string_view::npos)
-            row.side.coefficients[kTerms.find(key[0]) + 1] = number(words, 1);
+            take_term(key, number(words, 1));
         else if ((key == "H" || key == "J") && number(words, 1) != 0)
             fail(key + " is beyond r^16");
     }
@@ -339,8 +375,8 @@ class SequenceReader : LensLines {
     enum class Part { kNone, kObject, kLens, kImage };  // whose commands are read
 
     WrittenTilt object_tilt_, image_tilt_;
-    std::vector<WrittenTilt> tilts_;  // of the rows
-    std::vector<WrittenX> x_of_rows_;
+    std::vector<WrittenTilt> tilts_;   // of the rows
+    std::vector<WrittenForm> forms_;   // of the rows
     std::vector<double> wavelengths_;  // of private glasses
     Part part_ = Part::kNone;
     bool by_curvature_ = false, ended_ = false, in_private_ = false;

@@ -22,7 +22,8 @@ LensPrescription parse_zemax(const std::string& bytes, const std::string& file,
 /// Parses a CODE V sequence: SO, S and SI with radius (after CUM: curvature), thickness and glass, RDY, CUY,
 /// THI, GLA, RMD, CIR (CLR, EDG, HOL), STO, K, A to G, YTO, XTO and AAS with RDX, CUX, KX and KY, XDE to CDE
 /// with DAR, BEN and REV (also of the image), and private glasses (PRV). Throws as parse_zemax, and for
-/// commands that name their surface (K S2 -1).
+/// commands that name their surface (K S2 -1), forms that a surface has beside another, and AAS without RDX
+/// or CUX.
 LensPrescription parse_code_v(const std::string& bytes, const std::string& file,
                               std::span<const Glass> glasses = {});
 

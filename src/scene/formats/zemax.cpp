@@ -1,6 +1,7 @@
 // Reads what Zemax' sequential files say of their surfaces, line by line.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct ZemaxSurface {
     bool far = false;  // what comes next is at infinity
     struct Parameter {
         double index, value;
-        std::string written, place;
+        std::string written, place;  // "PARM 2", "line 17"
     };
     std::vector<Parameter> parameters, extra;  // PARM, XDAT
     double clear_radius = 0;                   // of a circular aperture; 0: the surface has none but its own
@@ -118,13 +119,20 @@ class ZemaxReader : LensLines {
                 std::string(key) + ": circular apertures about the vertex (DIAM, CLAP) are read";
             surface.aperture_place = place();
         } else if (key == "PARM" || key == "XDAT") {
-            const double index = number(words, 1);
-            (key == "PARM" ? surface.parameters : surface.extra)
-                .push_back({index, number(words, 2), std::string(words[1]), place()});
+            take_parameter(words, key == "PARM" ? surface.parameters : surface.extra);
         } else if (key == "GLAS") {
             row.mirror = words.size() > 1 && words[1] == "MIRROR";
             row.glass = row.mirror ? Glass() : glass(words);
         }
+    }
+
+    void take_parameter(const std::vector<std::string_view>& words,
+                        std::vector<ZemaxSurface::Parameter>& parameters) const {
+        const double index = number(words, 1), value = number(words, 2);
+        const std::string written = std::string(words[0]) + " " + std::string(words[1]);
+        for (const ZemaxSurface::Parameter& one : parameters)
+            if (one.index == index) fail(written + ": the surface has it already, in " + one.place);
+        parameters.push_back({index, value, written, place()});
     }
 
     bool changes_aperture(const std::vector<std::string_view>& words) const {
@@ -132,30 +140,35 @@ class ZemaxReader : LensLines {
         return std::find(std::begin(kApertures), std::end(kApertures), words[0]) != std::end(kApertures);
     }
 
-    /// Terms from PARM `first` on; other parameters have been taken, up to `first`.
-    void set_coefficients(const ZemaxSurface& surface, int first, std::size_t count, LensSide& side) const {
-        for (const ZemaxSurface::Parameter& one : surface.parameters) {
-            const double term = one.index - first;
-            if (term >= 0 && term < static_cast<double>(count) && term == std::floor(term))
-                side.coefficients[static_cast<std::size_t>(term)] = one.value;
-            else if (one.value != 0 && !(one.index >= 1 && one.index < first))
+    /// Those that are read have the numbers 1 to `last`.
+    void refuse_others(const ZemaxSurface& surface, const std::vector<ZemaxSurface::Parameter>& parameters,
+                       double last) const {
+        for (const ZemaxSurface::Parameter& one : parameters)
+            if (one.value != 0 &&
+                !(one.index >= 1 && one.index <= last && one.index == std::floor(one.index)))
                 throw InputError(lens_.file, one.place,
-                                 "PARM " + one.written + " is not read of surfaces of type " + surface.type);
-        }
+                                 one.written + " is not read of surfaces of type " + surface.type);
+    }
+
+    /// `count` terms from PARM `first` on; none has a number behind them.
+    void set_coefficients(const ZemaxSurface& surface, int first, int count, LensSide& side) const {
+        refuse_others(surface, surface.parameters, first + count - 1);
+        for (int i = 0; i < count; ++i)
+            side.coefficients[static_cast<std::size_t>(i)] = surface.parameter(first + i);
     }
 
     /// What a surface of its type has beside radius and conic constant.
     void set_form(const ZemaxSurface& surface, LensSide& side) const {
         const auto curvature = [](double radius) { return radius == 0 ? 0 : 1 / radius; };
         if (surface.type == "EVENASPH") {
-            set_coefficients(surface, 1, kAsphereTerms, side);
+            set_coefficients(surface, 1, static_cast<int>(kAsphereTerms), side);
         } else if (surface.type == "BICONICX") {
-            set_coefficients(surface, 3, 0, side);
+            refuse_others(surface, surface.parameters, 2);
             side.form = SideForm::kBiconic;
             side.across_curvature = curvature(surface.parameter(1));
             side.across_conic = surface.parameter(2);
         } else if (surface.type == "TOROIDAL") {
-            set_coefficients(surface, 2, kAsphereTerms - 1, side);
+            set_coefficients(surface, 2, static_cast<int>(kAsphereTerms) - 1, side);
             side.form = SideForm::kToricY;
             side.across_curvature = curvature(surface.parameter(1));
         } else if (surface.type == "QED_TYPE") {
@@ -167,10 +180,7 @@ class ZemaxReader : LensLines {
                                  "QED_TYPE and COORDBRK are read");
         }
         if (surface.type == "QED_TYPE" || surface.type == "STANDARD") return;
-        for (const ZemaxSurface::Parameter& one : surface.extra)
-            if (one.value != 0)
-                throw InputError(lens_.file, one.place,
-                                 "XDAT " + one.written + " is not read of surfaces of type " + surface.type);
+        refuse_others(surface, surface.extra, 0);
     }
 
     /// XDAT 1: 0 for Qbfs, 1 for Qcon; 2: how many terms; 3: the normalization radius; from 4 on A0, A1, ...
@@ -184,12 +194,17 @@ class ZemaxReader : LensLines {
         if (!(count >= 0) || count != std::floor(count))
             fail_at_type("whose number of terms (XDAT 2) is no whole number");
         if (count > 0 && !(radius > 0)) fail_at_type("without a normalization radius (XDAT 3)");
+        refuse_others(surface, surface.parameters, 0);
+        refuse_others(surface, surface.extra, std::numeric_limits<double>::infinity());
         std::vector<double> terms;
         for (const ZemaxSurface::Parameter& one : surface.extra) {
             const double term = one.index - 4;
-            if (!(term >= 0) || !(term < count) || one.value == 0) continue;
+            if (term < 0 || one.value == 0) continue;
+            if (!(term < count))
+                throw InputError(lens_.file, one.place,
+                                 one.written + " is beyond the number of terms (XDAT 2)");
             if (!(term < static_cast<double>(kQTerms)))
-                throw InputError(lens_.file, one.place, "XDAT " + one.written + " is beyond r^16");
+                throw InputError(lens_.file, one.place, one.written + " is beyond r^16");
             terms.resize(std::max(terms.size(), static_cast<std::size_t>(term) + 1));
             terms[static_cast<std::size_t>(term)] = one.value;
         }
@@ -231,6 +246,7 @@ class ZemaxReader : LensLines {
     /// The row before becomes as much longer; what the break does else comes behind that. In front of the
     /// first row its thickness moves the lens as a whole.
     void add_break(const ZemaxSurface& surface) {
+        refuse_others(surface, surface.parameters, 6);
         const double thickness = surface.row.thickness;
         if (!lens_.rows.empty()) lens_.rows.back().thickness += thickness;
         bend_ = along_axis(-thickness) * bend_ * break_of(surface) * along_axis(thickness);
