@@ -14,11 +14,6 @@ namespace fs = std::filesystem;
 namespace trilens_fuzz {
 namespace {
 
-constexpr const char* kSmallScene = R"({ "version": 1, "film": { "width": 8, "height": 6 },
-  "cameras": [ { "name": "c", "type": "perspective", "yfov": 40, "lookAt": { "eye": [0, 0, 4], "at": [0, 0, 0] } } ],
-  "materials": [ { "name": "chrome", "metallicFactor": 1 } ],
-  "meshes": [ { "name": "ball", "role": "optic", "material": "chrome", "primitive": { "type": "sphere" } } ] })";
-
 /// The parts of an input, divided by lines of three dashes: files of one folder.
 std::vector<std::string_view> parts_of(std::string_view bytes) {
     std::vector<std::string_view> parts;
@@ -48,7 +43,7 @@ Answer gltf_file(std::string_view bytes) {
 
 Answer sweep_file(std::string_view bytes) {
     const std::string file = put_file("sweep.json", bytes);
-    put_file("scene.json", kSmallScene);
+    put_file("scene.json", small_scene());
     return answer([&] {
         SweepRequest base;
         base.scene.file = fuzz_folder() + "/scene.json";
@@ -61,7 +56,7 @@ Answer sweep_file(std::string_view bytes) {
 
 Answer test_file(std::string_view bytes) {
     put_file("test/test.json", bytes);
-    put_file("test/scene.json", kSmallScene);
+    put_file("test/scene.json", small_scene());
     return answer([&] { read_render_test(fuzz_folder() + "/test"); });
 }
 

@@ -16,15 +16,6 @@ namespace fs = std::filesystem;
 namespace trilens_fuzz {
 namespace {
 
-constexpr const char* kSmallScene = R"({ "version": 1, "film": { "width": 8, "height": 6 },
-  "cameras": [ { "name": "c", "type": "perspective", "yfov": 40, "lookAt": { "eye": [0, 0, 4], "at": [0, 0, 0] } } ],
-  "materials": [ { "name": "chrome", "metallicFactor": 1 }, { "name": "white", "unlit": true } ],
-  "meshes": [ { "name": "a", "role": "optic", "material": "chrome", "primitive": { "type": "sphere" } },
-              { "name": "b", "role": "optic", "material": "chrome",
-                "primitive": { "type": "sphere", "center": [1.5, 0, 0], "radius": 0.5 } },
-              { "name": "wall", "role": "object", "material": "white", "points": [[-9,-9,9],[9,-9,9],[9,9,9],[-9,9,9]],
-                "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] } ] })";
-
 std::string text_of(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -59,7 +50,7 @@ Answer sweep_report(std::string_view bytes) {
     request.folder = fuzz_folder() + "/sweep";
     fs::remove_all(request.folder);
     return answer([&] {
-        Scene scene = parse_scene(kSmallScene);
+        Scene scene = parse_scene(small_scene());
         scene.meshes[0].name = kMark + first;
         scene.meshes[1].name = kMark + second;
         request.loaded = scene;

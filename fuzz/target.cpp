@@ -37,6 +37,15 @@ constexpr std::array kTargets{
     FuzzTarget{"wish", "the wish of a freeform mirror", wish_text},
 };
 
+constexpr const char* kSmallScene = R"({ "version": 1, "film": { "width": 8, "height": 6 },
+  "cameras": [ { "name": "c", "type": "perspective", "yfov": 40, "lookAt": { "eye": [0, 0, 4], "at": [0, 0, 0] } } ],
+  "materials": [ { "name": "chrome", "metallicFactor": 1 }, { "name": "white", "unlit": true } ],
+  "meshes": [ { "name": "a", "role": "optic", "material": "chrome", "primitive": { "type": "sphere" } },
+              { "name": "b", "role": "optic", "material": "chrome",
+                "primitive": { "type": "sphere", "center": [1.5, 0, 0], "radius": 0.5 } },
+              { "name": "wall", "role": "object", "material": "white", "points": [[-9,-9,9],[9,-9,9],[9,9,9],[-9,9,9]],
+                "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] } ] })";
+
 /// Made when first asked for, and taken away when the process ends.
 struct OwnFolder {
     OwnFolder() {
@@ -60,6 +69,10 @@ std::span<const FuzzTarget> fuzz_targets() {
 const FuzzTarget* find_target(std::string_view name) {
     const auto found = std::ranges::find(kTargets, name, &FuzzTarget::name);
     return found == kTargets.end() ? nullptr : &*found;
+}
+
+const char* small_scene() {
+    return kSmallScene;
 }
 
 const std::string& fuzz_folder() {

@@ -80,6 +80,9 @@ Answer random_terrain(std::string_view bytes);
 Answer random_radiosity(std::string_view bytes);
 Answer sweep_report(std::string_view bytes);
 
+/// The JSON of two mirror balls before a wall, 8 x 6 pixels.
+const char* small_scene();
+
 /// A folder of this process' own for the files that targets read, in memory where the system has that.
 const std::string& fuzz_folder();
 

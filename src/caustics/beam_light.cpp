@@ -87,9 +87,10 @@ struct BeamLight::Piece {
 Vec3 BeamLight::left_of(const LightHistory& history, const Vec3& origin, const Receiver& receiver) const {
     const Vec3 left = body_transmittance(*space_.optics, history.medium, length(origin - receiver.point));
     if (!space_.veil) return left;
-    // What lies on the surface of glass is outside.
-    const double inset = history.medium == kNone ? 0 : kSamePlace;
-    return space_.veil({receiver.lifted, (1 - inset) * (origin - receiver.lifted)}).through * left;
+    // What lies on the surface of glass is outside; a segment takes in what is at its ends.
+    const Vec3 way = origin - receiver.lifted;
+    const double inset = history.medium == kNone ? 0 : 2 * same_place(origin) / length(way);
+    return space_.veil({receiver.lifted, (1 - inset) * way}).through * left;
 }
 
 /// Irradiance on the receiver's plane times the cosine that counts; none where nothing comes.

@@ -24,11 +24,12 @@ struct Stretch {
 void come_through(const LightSpace& space, const Stretch& stretch, Vec3& light,
                   std::vector<VeilSurface>& veils) {
     if (!space.veil) return;
-    // What lies on the surface of glass is outside.
-    const double inset = stretch.medium == kNone ? 0 : kSamePlace * stretch.length;
-    const Vec3& direction = stretch.ray.direction;
-    const Veil veil = space.veil({stretch.ray.origin + (stretch.length - inset) * direction,
-                                  -(stretch.length - 2 * inset) * direction});
+    const auto& [origin, direction] = stretch.ray;
+    const Vec3 end = origin + stretch.length * direction;
+    // What lies on the surface of glass is outside; a segment takes in what is at its ends.
+    const bool in_glass = stretch.medium != kNone;
+    const double after = in_glass ? 2 * same_place(origin) : 0, before = in_glass ? 2 * same_place(end) : 0;
+    const Veil veil = space.veil({end - before * direction, -(stretch.length - before - after) * direction});
     light *= veil.through;
     veils.insert(veils.end(), veil.surfaces.begin(), veil.surfaces.end());
 }

@@ -158,8 +158,22 @@ void check_prescription(const LensPrescription& lens) {
             fail(lens, lens.rows[shell.row], std::string("no obscuration can be made of it: ") + fault);
 }
 
+namespace {
+
+/// How far a shell stands off the surface: at least a thousandth of its radius, and what its triangles,
+/// between kShellSegments / 4 rings of kShellSegments corners, are off it.
+double shell_gap(const LensSide& side) {
+    constexpr double kLeast = 1e-3;
+    if (!(side_room(side) > 0)) return kLeast * side.aperture;  // no shell can be made of it
+    const SagBounds most = sag_bounds(side);
+    const double ring = side.aperture * 4 / kShellSegments,
+                 chord = side.aperture * (1 - std::cos(std::numbers::pi / kShellSegments));
+    return std::max(kLeast * side.aperture, most.second * ring * ring / 8 + most.first * chord);
+}
+
+}  // namespace
+
 std::vector<LensObscuration> lens_obscurations(const LensPrescription& lens) {
-    constexpr double kShell = 1e-3;  // what a tessellated shell is off its surface is less
     const std::vector<LensPose> poses = lens_poses(lens);
     const std::vector<LensMedium> media = lens_media(lens);
     std::vector<LensObscuration> shells;
@@ -167,10 +181,10 @@ std::vector<LensObscuration> lens_obscurations(const LensPrescription& lens) {
         const LensRow& row = lens.rows[i];
         const bool is_before = media[i].glass.is_air();
         if (!(row.obscuration > 0) || (!is_before && (row.mirror || !media[i + 1].glass.is_air()))) continue;
-        const double gap = kShell * row.obscuration;
         const bool below = is_before ? media[i].sense > 0 : media[i + 1].sense < 0;
         LensSide side = row.side;
         side.aperture = row.obscuration;
+        const double gap = shell_gap(side);
         shells.push_back({i, poses[i] * along_axis(below ? -2 * gap : gap), {gap, side, side}});
     }
     return shells;
@@ -246,6 +260,19 @@ void check_way_back(const LensPrescription& lens, std::size_t mirror) {
         fail(lens, row, "light leaves its glass by another side than it came in by: no body is made of it");
 }
 
+/// Whether light comes a second time, against the axis, through the glass from row i to the next.
+bool is_way_back(const LensPrescription& lens, std::size_t i, const std::vector<LensElement>& bodies) {
+    const std::vector<LensPose> poses = lens_poses(lens);
+    const double size = std::fabs(lens.rows[i].thickness);
+    const auto is_same = [&](std::size_t a, std::size_t b) {
+        return have_one_shape(lens.rows[a].side, lens.rows[b].side) &&
+               is_identity(inverse(poses[a]) * poses[b], size);
+    };
+    return std::any_of(bodies.begin(), bodies.end(), [&](const LensElement& body) {
+        return !body.is_mirror && is_same(body.first, i + 1) && is_same(body.first + 1, i);
+    });
+}
+
 }  // namespace
 
 std::vector<LensElement> lens_elements(const LensPrescription& lens) {
@@ -255,7 +282,7 @@ std::vector<LensElement> lens_elements(const LensPrescription& lens) {
     std::vector<LensElement> elements;
     for (std::size_t i = 0; i < lens.rows.size(); ++i) {
         const bool is_mirror = lens.rows[i].mirror, is_glass = !media[i + 1].glass.is_air();
-        if (!is_mirror && !is_glass) continue;
+        if (!is_mirror && (!is_glass || is_way_back(lens, i, elements))) continue;
         for (std::size_t k = i; k <= (is_glass ? i + 1 : i); ++k)
             if (!(lens.rows[k].side.aperture > 0))
                 fail(lens, lens.rows[k], "has no aperture, so no rim can be made");

@@ -122,12 +122,15 @@ struct LensElement {
     bool is_mirror = false;
 };
 
-/// All bodies in order; those that are cemented have one side in common. A mirror's body is flat behind, and
-/// as thick there as a quarter of its aperture; on glass (Mangin's) it has a side in common with it. Throws
-/// InputError with the place of a row that has no aperture, of which no body can be made (see lens_fault), of
-/// glass whose sides are tilted against each other, and of a mirror on glass that light leaves by another
-/// side than it came in by.
+/// All bodies in order, each once however often light comes through; those that are cemented have one side in
+/// common. A mirror's body is flat behind, and as thick there as a quarter of its aperture; on glass
+/// (Mangin's) it has a side in common with it. Throws InputError with the place of a row that has no
+/// aperture, of which no body can be made (see lens_fault), of glass whose sides are tilted against each
+/// other, and of a mirror on glass that light leaves by another side than it came in by.
 std::vector<LensElement> lens_elements(const LensPrescription& lens);
+
+/// Corners of a ring of an obscuration's shell; it has a quarter as many rings.
+inline constexpr int kShellSegments = 128;
 
 /// An opaque shell over a row's obscuration, with its front's vertex at the origin of its frame.
 struct LensObscuration {
@@ -137,8 +140,8 @@ struct LensObscuration {
 };
 
 /// All that can be made: between glass and glass there is no place for one. The shells are as thick as a
-/// thousandth of their radius, and as far from the surface, on the side that light comes from where air is
-/// there.
+/// thousandth of their radius, on steep sides more, and as far from the surface, on the side that light comes
+/// from where air is there.
 std::vector<LensObscuration> lens_obscurations(const LensPrescription& lens);
 
 /// From the first surface's vertex to that of `row`, along the axis; tilts and decentres are not looked at.

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/description/lens_sag.h"
 #include "base/util/error.h"
 #include "lens/sequential_rays.h"
 #include "support/draw.h"
@@ -211,6 +212,45 @@ TEST_CASE("rays through decentred and tilted elements are those of the surfaces 
     const LensPose image = lens_poses(lens).back();
     CHECK(length(image.turn[2] - turned(z, x, -60)) < 1e-14);
     CHECK(length(image.shift - fourth) < 1e-13);
+}
+
+TEST_CASE("a mirror on two cemented glasses makes each body once", "[lens]") {
+    LensPrescription lens{"two glasses", "two glasses", {}};
+    const LensSide outer{-1.0 / 100, 0, {}, 20}, inner{-1.0 / 130, 0, {}, 20};
+    const Glass crown{"BK7", 1.5168, 64.17}, flint{"SF5", 1.6727, 32.21};
+    lens.rows = {
+        {outer, 5, crown}, {inner, 4, flint}, mirror_of(-150, 0, 20, -4), {inner, -5, crown}, {outer}};
+    const std::vector<LensElement> bodies = lens_elements(lens);
+    REQUIRE(bodies.size() == 3);
+    CHECK(bodies[0].medium.glass.name == "BK7");
+    CHECK(bodies[1].medium.glass.name == "SF5");
+    CHECK(bodies[2].is_mirror);
+    // Glass behind another side is another body.
+    lens.rows[4].side.curvature = -1.0 / 101;
+    CHECK(lens_elements(lens).size() == 4);
+}
+
+TEST_CASE("the shell of an obscuration keeps off the surface, however steep", "[lens]") {
+    for (const double radius : {1.05, 1.5, -1.2, 30.0}) {
+        LensPrescription lens{"steep", "steep", {}};
+        lens.rows = {{{1 / radius, 0, {}, 1}, 0.5, {"BK7", 1.5168, 64.17}}, {{0, 0, {}, 1}}};
+        lens.rows[0].obscuration = 0.99;
+        const std::vector<LensObscuration> shells = lens_obscurations(lens);
+        REQUIRE(shells.size() == 1);
+        const double gap = -shells[0].pose.shift.z - shells[0].shape.thickness;
+        // Its triangles lie between rings; the surface must not reach to them.
+        double off = 0;
+        for (int i = 0; i < kShellSegments / 4; ++i) {
+            const double low = 0.99 * 4 * i / kShellSegments, high = 0.99 * 4 * (i + 1) / kShellSegments;
+            const auto z = [&](double r) { return sag_over(lens.rows[0].side, {r, 0}).z; };
+            for (const double share : {0.25, 0.5, 0.75})
+                off = std::max(off, std::fabs((1 - share) * z(low) + share * z(high) -
+                                              z((1 - share) * low + share * high)));
+        }
+        INFO("radius " << radius << ": off " << off << ", gap " << gap);
+        CHECK(off < gap);
+        CHECK(gap < 0.1);
+    }
 }
 
 TEST_CASE("a Mangin mirror's paraxial focus is that of its exact rays near the axis", "[lens][oracle]") {

@@ -44,6 +44,13 @@ inline Vec3 position(const TriangleScene& scene, const Hit& hit) {
 /// smaller (object, primitive) is then the one seen, in the projector and in the truth alike.
 inline constexpr double kDepthTie = 1e-9;
 
+/// As far apart as rounding puts two surfaces at one place. Of surfaces that let light through in part, what
+/// one leg of a path leaves out where it ends, the next takes in, which starts there: both ask for one place.
+inline double same_place(const Vec3& place) {
+    constexpr double kShare = 1e-8;  // of the largest coordinate
+    return kShare * std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+}
+
 /// Whether what lies at t, of `object`, is seen before what lies at than_t, of than_object, by that rule; for
 /// two hits of different objects along one ray.
 inline bool comes_before(double t, Id object, double than_t, Id than_object) {

@@ -88,9 +88,8 @@ struct FilmBox {
 std::array<FilmBox, 2> mark_boxes(const World& world, const PlacedMark& mark);
 
 /// Leaves out images of labels that give way and whose letters or dot would cover another label's on the
-/// film: those that do not give way
-/// stand first, then those of higher priority, of these the nearer ones, and else those that the scene has
-/// first.
+/// film. Those that do not give way stand first, then those of higher priority, of these the nearer ones, and
+/// else those that the scene has first.
 void leave_out_crowded(const World& world, PlacedMarks& marks);
 
 /// What a picture of the world leaves out of its marks.

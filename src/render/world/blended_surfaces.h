@@ -2,8 +2,6 @@
 // that hide it.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "base/raymesh/ray_mesh.h"
@@ -13,13 +11,6 @@
 #include "volume/volume_integral.h"
 
 namespace trilens {
-
-/// As far apart as rounding puts two surfaces at one place. What one leg of a path leaves out where it ends,
-/// the next, which starts there, takes in: both ask for the same place.
-inline double same_place(const Vec3& place) {
-    constexpr double kShare = 1e-8;  // of the largest coordinate
-    return kShare * std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
-}
 
 /// The blended triangles of a world's objects. Thread-safe to read.
 class BlendedSurfaces {

@@ -95,7 +95,7 @@ class Expansion {
                                  {"thickness", shell.shape.thickness},
                                  {"front", side_json(shell.shape.front)},
                                  {"back", side_json(shell.shape.back)},
-                                 {"segments", kRingSegments}};
+                                 {"segments", kShellSegments}};
             add(std::move(mesh));
         }
         std::vector<const LensRow*> left_out;
