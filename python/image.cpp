@@ -178,7 +178,8 @@ void bind_image(py::module_& module) {
             "maxDepth;\nfragment_pixels (shaded once or a few times for all their samples), fragments (of "
             "these pixels),\nfragments_per_pixel, rays_by_sample (shaded at each sample), "
             "pixels_shaded_by_sample (that have such rays);\nmarks (images of points and labels that are "
-            "painted), hidden_marks (on the film, but hidden),\nunseen_marks (points and labels without an "
+            "painted), hidden_marks (on the film, but hidden), crowded_marks (of labels that give "
+            "way),\nunseen_marks (points and labels without an "
             "image); prepare_seconds, draw_seconds.")
         .def("rgb", rgb_of, py::arg("layer") = "",
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"

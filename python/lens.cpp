@@ -25,8 +25,10 @@ py::dict first_order_dict(const LensPrescription& lens, const std::string& line,
     return numbers_dict(first_order(section_of(lens, plane), line_of(line)), kFirstOrderNumbers);
 }
 
-py::dict seidel_dict(const LensPrescription& lens, double pupil_radius, double field_slope) {
-    const SeidelSums seidel = seidel_sums(lens, {pupil_radius, field_slope});
+py::dict seidel_dict(const LensPrescription& lens, double pupil_radius, double field_slope,
+                     const std::string& section) {
+    const LensSection plane = require_named<LensSection>("section", section);
+    const SeidelSums seidel = seidel_sums(section_of(lens, plane), {pupil_radius, field_slope});
     py::list rows;
     for (const SeidelTerms& row : seidel.rows) rows.append(numbers_dict(row, kSeidelNumbers));
     py::dict dict;
@@ -74,9 +76,11 @@ void bind_lens(py::module_& module) {
              "focal_length, back_focal_length, front_focus, front_principal, back_principal,\n"
              "entrance_pupil, exit_pupil (places from the first or last vertex),\n"
              "entrance_radius, exit_radius, f_number, length, petzval_radius.\n"
-             "Raises InputError where the lens has no focal length.")
-        .def("seidel", seidel_dict, py::arg("pupil_radius"), py::arg("field_slope"),
-             "Seidel's sums as wavefront aberrations in lengths, object at infinity: of each of the\n"
+             "Raises InputError where the section has no focal length.")
+        .def("seidel", seidel_dict, py::arg("pupil_radius"), py::arg("field_slope"), py::kw_only(),
+             py::arg("section") = "y",
+             "Seidel's sums as wavefront aberrations in lengths, object at infinity, of the section along\n"
+             "\"y\" or \"x\", the field in it: of each of the\n"
              "surfaces and their sum (spherical, coma, astigmatism, petzval, distortion,\n"
              "axial_colour, lateral_colour), image_slope and image_height.\n"
              "Over twice image_slope they are transverse aberrations.")
@@ -85,7 +89,8 @@ void bind_lens(py::module_& module) {
             py::arg("line") = "d", py::arg("rings") = SpotRequest().rings, py::arg("shift") = 0.0,
             "Where exact rays of a beam from infinity, `field` degrees from the axis, meet the plane `shift` "
             "behind the\n"
-            "paraxial focus: points, asked (rays sent), centroid, rms_radius, radius. pupil_radius 0: the "
+            "paraxial focus of imaging_section: points, asked (rays sent), centroid, rms_radius, radius. "
+            "pupil_radius 0: the "
             "stop's.")
         .def("trace", traced, py::arg("origin"), py::arg("direction"), py::kw_only(), py::arg("line") = "d",
              "An exact ray through all surfaces, z along the axis from the first vertex: (origin on the last "
@@ -93,6 +98,10 @@ void bind_lens(py::module_& module) {
              "direction), None where it does not come through.")
         .def_property_readonly("is_round", py::overload_cast<const LensPrescription&>(is_round),
                                "Whether all its sides are of revolution.")
+        .def_property_readonly(
+            "imaging_section",
+            [](const LensPrescription& lens) { return std::string(name_of(imaging_section(lens))); },
+            "\"y\", or \"x\" where the lens gathers nothing along y, as a cylinder may.")
         .def_property_readonly("is_centred", is_centred, "Whether nothing is tilted or decentred.")
         .def("__repr__", [](const LensPrescription& lens) {
             return "<trilens.Lens \"" + lens.name + "\" " + std::to_string(lens.rows.size()) + " surfaces>";

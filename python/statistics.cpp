@@ -30,6 +30,7 @@ py::dict statistics_dict(const Picture& picture) {
     statistics["deep_pixels"] = counts.deep_pixels;
     statistics["marks"] = counts.marks;
     statistics["hidden_marks"] = counts.hidden_marks;
+    statistics["crowded_marks"] = counts.crowded_marks;
     statistics["unseen_marks"] = counts.unseen_marks;
     statistics["fragment_pixels"] = counts.fragment_pixels;
     statistics["fragments"] = counts.fragments;

@@ -38,11 +38,9 @@ std::string terms_line(const std::string& name, const SeidelTerms& t, double sca
     return text + "\n";
 }
 
-std::string first_order_text(const LensPrescription& lens, const FirstOrder& first) {
-    std::string text =
-        fmt::format("{}: {} surfaces, length {:.6g}\n", lens.name, lens.rows.size(), first.length);
-    text += fmt::format("focal length {:.6g}, back focal length {:.6g}", first.focal_length,
-                        first.back_focal_length);
+std::string first_order_text(const FirstOrder& first) {
+    std::string text = fmt::format("focal length {:.6g}, back focal length {:.6g}", first.focal_length,
+                                   first.back_focal_length);
     if (first.f_number > 0) text += fmt::format(", f/{:.3g}", first.f_number);
     text += fmt::format("\nprincipal planes {:.6g} behind the first vertex, {:.6g} behind the last\n",
                         first.front_principal, first.back_principal);
@@ -67,6 +65,25 @@ void add_section_along_x(const LensPrescription& lens, SpectralLine line, Answer
     }
 }
 
+/// Of the section that gathers light; what another one lacks is null.
+Answer first_order_answer(const LensPrescription& lens, const FirstOrder& first, LensSection section,
+                          SpectralLine line) {
+    Answer answer;
+    answer.fields["lens"] = lens.name;
+    answer.fields["line"] = std::string(name_of(line));
+    answer.text = fmt::format("{}: {} surfaces, length {:.6g}\n", lens.name, lens.rows.size(), first.length);
+    const Json numbers = numbers_json(first, kFirstOrderNumbers);
+    const bool is_along_x = section == LensSection::kX;
+    answer.fields["first_order"] = is_along_x ? Json() : numbers;
+    if (is_along_x) {
+        answer.fields["first_order_x"] = numbers;
+        answer.text += "along y: no focal length; along x:\n";
+    }
+    answer.text += first_order_text(first);
+    if (!is_along_x && !is_round(lens)) add_section_along_x(lens, line, answer);
+    return answer;
+}
+
 /// As transverse aberrations in the paraxial focus, the form of published tables.
 std::string seidel_text(const SeidelSums& seidel) {
     const double scale = 1 / (2 * seidel.image_slope);
@@ -84,16 +101,17 @@ Answer run(const LensOptions& options, Console& console) {
     const LensPrescription lens = load_lens(options.lens, options.glasses);
     if (!is_centred(lens))
         console.warn("first order and Seidel's sums take its surfaces as if none were tilted or decentred");
-    if (!is_round(lens))
+    const LensSection section = imaging_section(lens);
+    if (section == LensSection::kX)
+        console.warn(
+            "along y it has no focal length: first order, Seidel's sums, their field and the pupil are "
+            "those of its section along x");
+    else if (!is_round(lens))
         console.warn("first order, Seidel's sums and the pupil are those of its section along y");
     const SpectralLine line = *find_named<SpectralLine>(options.line);
-    const FirstOrder first = first_order(lens, line);
-    Answer answer;
-    answer.fields["lens"] = lens.name;
-    answer.fields["line"] = options.line;
-    answer.fields["first_order"] = numbers_json(first, kFirstOrderNumbers);
-    answer.text = first_order_text(lens, first);
-    if (!is_round(lens)) add_section_along_x(lens, line, answer);
+    const LensPrescription cut = section_of(lens, section);
+    const FirstOrder first = first_order(cut, line);
+    Answer answer = first_order_answer(lens, first, section, line);
 
     const double pupil = options.pupil > 0 ? options.pupil : first.entrance_radius;
     if (!(pupil > 0) || !std::isfinite(pupil)) {
@@ -101,7 +119,7 @@ Answer run(const LensOptions& options, Console& console) {
         return answer;
     }
     const double slope = std::tan(options.field * std::numbers::pi / 180);
-    const SeidelSums seidel = seidel_sums(lens, {pupil, slope});
+    const SeidelSums seidel = seidel_sums(cut, {pupil, slope});
     Json& sums = answer.fields["seidel"];
     sums = {{"pupil_radius", pupil},
             {"field_degrees", options.field},

@@ -63,6 +63,14 @@ std::vector<ParaxialPlace> paraxial_ray(const LensPrescription& lens, const Para
     return places;
 }
 
+LensSection imaging_section(const LensPrescription& lens) {
+    const auto gathers = [&](LensSection section) {
+        const std::vector<ParaxialPlace> ray = paraxial_ray(section_of(lens, section), {1, 0});
+        return !ray.empty() && ray.back().slope != 0;
+    };
+    return !gathers(LensSection::kY) && gathers(LensSection::kX) ? LensSection::kX : LensSection::kY;
+}
+
 FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
     check_prescription(lens);
     // The two basic rays: parallel to the axis at height 1, and through the first vertex with slope 1.

@@ -58,7 +58,10 @@ inline constexpr std::array<NamedNumber<FirstOrder>, 12> kFirstOrderNumbers{
      {"length", &FirstOrder::length},
      {"petzval_radius", &FirstOrder::petzval_radius}}};
 
-/// Throws InputError where the lens has no focal length (its last ray runs along the axis).
+/// The section along y, or that along x where the lens gathers nothing along y, as a cylinder may.
+LensSection imaging_section(const LensPrescription& lens);
+
+/// Throws InputError where the lens has no focal length along y (its last ray runs along the axis).
 FirstOrder first_order(const LensPrescription& lens, SpectralLine line = SpectralLine::kD);
 
 /// Sums of one surface, or of all: wavefront aberrations in lengths, of the given pupil and field. Colour

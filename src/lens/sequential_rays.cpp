@@ -108,7 +108,7 @@ Spot spot_of(const LensPrescription& lens, const SpotRequest& request) {
         throw UsageError("a spot has 1 to " + std::to_string(kMostRings) + " rings of rays");
     if (!(std::fabs(request.field_degrees) < 90))
         throw UsageError("a field is within 90 degrees of the axis");
-    const FirstOrder first = first_order(lens);
+    const FirstOrder first = first_order(section_of(lens, imaging_section(lens)));
     const double pupil = request.pupil_radius > 0 ? request.pupil_radius : first.entrance_radius;
     if (!(pupil > 0) || !std::isfinite(pupil) || !std::isfinite(first.entrance_pupil))
         throw InputError(lens.file, lens.rows[stop_row(lens)].place,

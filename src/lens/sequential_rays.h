@@ -28,7 +28,8 @@ struct SpotRequest {
     double focus_shift = 0;  // of the plane, from the paraxial focus at the d line, along the light
 };
 
-/// Where a beam from infinity meets a plane across the axis, in the image's frame.
+/// Where a beam from infinity meets a plane across the axis, in the image's frame. Focus and pupil are those
+/// of the imaging section.
 struct Spot {
     std::vector<Vec2> points;  // x and y in the plane, of rays that come through
     std::size_t asked = 0;     // rays that were sent

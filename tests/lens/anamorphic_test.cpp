@@ -182,6 +182,11 @@ TEST_CASE("a cylinder lens gathers light in one section, at the thin lens' dista
         CHECK(std::fabs(first.focal_length - 1 / ((1.5 - 1) * 2 * c)) < 1e-6);
         CHECK(std::fabs(crossing(lens, with, 1e-3) - 100) < 1e-5);
         CHECK_THROWS_AS(first_order(section_of(lens, without)), InputError);
+        CHECK(imaging_section(lens) == with);
+        // The spot lies in that focus: a line as long as the beam is wide.
+        const Spot spot = spot_of(lens, {.pupil_radius = 0.1});
+        for (const Vec2& p : spot.points) CHECK(std::fabs(with == LensSection::kX ? p.x : p.y) < 1e-6);
+        CHECK(std::fabs(spot.radius - 0.1) < 1e-6);
         Vec3 origin(0, 0, -1);
         origin[without == LensSection::kX ? 0 : 1] = 3;
         const auto ray = trace_lens(lens, {origin, {0, 0, 1}});

@@ -155,6 +155,18 @@ def test_an_anamorphic_lens_has_two_focal_lengths(command, tmp_path):
     assert answer["first_order_x"] is None
     with pytest.raises(trilens.InputError, match="no focal length"):
         trilens.load_lens(flat).first_order(section="x")
+    assert trilens.load_lens(flat).imaging_section == "y"
+    across = tmp_path / "across.seq"
+    across.write_text("RDM\nSO 0 1E13\nS 0 4 NBK7\n CIR 8\n CYL; RDX 30\nS 0 54.4\n CIR 8\nSI 0 0\n")
+    lens = trilens.load_lens(across)
+    assert lens.imaging_section == "x"
+    _, answer = command("lens", across, "--pupil", 1)
+    assert answer["first_order"] is None
+    assert answer["first_order_x"] == lens.first_order(section="x")
+    assert answer["first_order_x"]["focal_length"] == pytest.approx(30 / 0.5168, rel=1e-12)
+    assert answer["seidel"]["sum"] == lens.seidel(1, 0, section="x")["sum"]
+    assert answer["spot"]["radius"] == pytest.approx(1, rel=1e-3)
+    assert any("along y it has no focal length" in warning for warning in answer["warnings"])
     side = {"aperture": 1, "radius": 3, "rotationRadius": -4, "profileAlong": "x"}
     bowl = trilens.primitive_surface("lens", axis=(0, 0, 1), front=side, back=(0, 1), thickness=1)
     assert bowl.face_count == 14

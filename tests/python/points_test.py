@@ -56,6 +56,16 @@ def test_labels_have_letters(room):
         assert ((red > 0.95) & (red < 1.05)).sum() > more / 4
 
 
+def test_labels_that_give_way_are_counted(room):
+    label = {"text": "here", "at": [0, 2.4, 1.0], "minWeight": 0.95}
+    crowd = {**room, "points": [], "labels": [label] + 3 * [{**label, "givesWay": True}]}
+    with pytest.warns(trilens.TrilensWarning, match="images of labels are left out"):
+        statistics = trilens.Renderer(trilens.parse_scene(crowd, folder=SOURCE / "scenes/points")).render().statistics
+    free = trilens.Renderer(trilens.parse_scene({**crowd, "labels": 4 * [label]}, folder=SOURCE / "scenes/points"))
+    assert free.render().statistics["crowded_marks"] == 0
+    assert statistics["crowded_marks"] == 3 * statistics["marks"] > 0
+
+
 def test_an_svg_has_ellipses_and_texts(room, command, tmp_path):
     scene = tmp_path / "room.json"
     scene.write_text(trilens.parse_scene(room, folder=SOURCE / "scenes/points").to_json())

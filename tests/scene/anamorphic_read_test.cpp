@@ -1,6 +1,7 @@
 // Biconic, toric, Q-type and obscured surfaces of lens files and of JSON.
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "base/util/error.h"
 #include "lens/q_asphere.h"
@@ -122,8 +123,9 @@ TEST_CASE("toric and anamorphic surfaces of CODE V have their radii and terms", 
     CHECK(both.conic == -0.5);
     CHECK(both.across_conic == 1.5);
     const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
-    CHECK(refused("K 0\nRDX 80") ==
-          "a.seq: line 5: RDX and CUX are read of toric and biconic surfaces (YTO, XTO, AAS)");
+    CHECK(
+        refused("K 0\nRDX 80") ==
+        "a.seq: line 5: RDX and CUX are read of cylinders, toric and biconic surfaces (CYL, YTO, XTO, AAS)");
     const std::string of_biconic = "KX and KY are read of biconic surfaces (AAS)";
     for (const std::string words : {"YTO\nKX 1", "\nKX 1", "\nKY 1", "XTO\nKY 1", "SPH\nKY 0"}) {
         CAPTURE(words);
@@ -140,7 +142,59 @@ TEST_CASE("toric and anamorphic surfaces of CODE V have their radii and terms", 
     CHECK(refused("YTO S1") ==
           "a.seq: line 4: YTO S1: commands of a surface are read behind it, without its "
           "name");
-    CHECK(refused("SPS QBF").starts_with("a.seq: line 4: SPS: "));
+}
+
+TEST_CASE("cylinders of CODE V are bent along the axis whose radius they have", "[scene][lens]") {
+    const LensSide along_y = code_v("CYL").rows[0].side;
+    CHECK(along_y.form == SideForm::kToricY);
+    CHECK(along_y.curvature == 1.0 / 50);
+    CHECK(along_y.across_curvature == 0);
+    const LensSide along_x = code_v("CYL; CUY 0; RDX 80").rows[0].side;
+    CHECK(along_x.form == SideForm::kToricX);
+    CHECK(along_x.curvature == 1.0 / 80);
+    CHECK(along_x.across_curvature == 0);
+    CHECK(code_v("CYL; K 0; A 0").rows[0].side.form == SideForm::kToricY);
+    const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
+    CHECK(refused("CYL; RDX 80") ==
+          "a.seq: line 4: a cylinder (CYL) is bent along y (RDY) or along x (RDX), not along both");
+    CHECK(refused("CYL\nK -1") == "a.seq: line 5: K is not of a cylinder (CYL)");
+    CHECK(refused("CYL\nA 1e-6") == "a.seq: line 5: A to G are not of a cylinder (CYL)");
+    CHECK(refused("CYL\nYTO") == "a.seq: line 5: YTO: the surface has a form already, CYL in line 4");
+}
+
+TEST_CASE("Q-type aspheres of CODE V are those of the polynomials", "[scene][lens]") {
+    const std::vector<double> terms{0.02, 0, -0.01};
+    const std::string numbered = "SCO C1 9; SCO C3 0.02; SCO C5 -0.01; SCO C4 0; SCC C3 0";
+    const LensSide mild = code_v("SPS QBF; " + numbered).rows[0].side;
+    CHECK(mild.normal_departures == qbfs_departures(terms, 9));
+    CHECK(mild.curvature == 1.0 / 50);
+    CHECK(code_v("SPS QBF; SCO NRADIUS 9; SCO QB4 0.02; SCO QB8 -0.01").rows[0].side.normal_departures ==
+          mild.normal_departures);
+    const LensSide strong = code_v("SPS QCN; K -0.5; " + numbered).rows[0].side;
+    CHECK(strong.coefficients == qcon_coefficients(terms, 9));
+    CHECK(strong.conic == -0.5);
+    CHECK(is_conicoid(code_v("SPS QBF").rows[0].side));
+    const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
+    CHECK(refused("SPS QBF\nK -1") == "a.seq: line 5: SPS QBF departs from a sphere: K must be 0");
+    CHECK(refused("SPS QBF\nSCO C3 0.02") ==
+          "a.seq: line 4: SPS QBF without a normalization radius (SCO C1)");
+    CHECK(refused("SPS QBF; SCO C1 -9; SCO C3 0.02").find("without a normalization radius") !=
+          std::string::npos);
+    CHECK(refused("SPS QCN\nSCO C2 -0.5") ==
+          "a.seq: line 5: SCO C2 of a Q-type surface is not known: conic constants are read from K");
+    CHECK(refused("SPS QBF\nSCO C10 0.02") == "a.seq: line 5: SCO C10 is beyond r^16");
+    CHECK(refused("SPS QBF\nA 1e-6") == "a.seq: line 5: A to G are not of a Q-type surface (SPS QBF)");
+    CHECK(refused("SCO C3 0.02\nSPS QBF").starts_with("a.seq: line 4: SCO C3 before its surface' form"));
+    for (const std::string name : {"C0", "C-3", "CX", "QB5", "QC4", "QB2"}) {
+        CAPTURE(name);
+        CHECK(refused("SPS QBF\nSCO " + name + " 1") ==
+              "a.seq: line 5: SCO " + name +
+                  " is not read: C1 is the normalization radius, from C3 on are the terms");
+    }
+    CHECK(refused("SPS XYP") ==
+          "a.seq: line 4: SPS XYP: of special surfaces Q-type ones (SPS QBF, SPS QCN) are read");
+    CHECK(refused("SPS QBF\nSCO") == "a.seq: line 5: SCO needs a coefficient");
+    CHECK(refused("SPS QBF\nSCO C3") == "a.seq: line 5: SCO needs a number");
 }
 
 TEST_CASE("a scene's anamorphic sides are those of its bodies, and keys that disagree are refused",

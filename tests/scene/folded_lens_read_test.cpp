@@ -275,8 +275,9 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
     CHECK(code_v("S 0 1\nADE 10; BEN") == "a.seq: line 5: BEN of a surface that is no mirror");
     CHECK(code_v("XDE 1..2") == "a.seq: line 4: XDE needs a number, not \"1..2\"");
     CHECK(
-        code_v("CYL") ==
-        "a.seq: line 4: CYL: conicoids, even aspheres, toric (YTO, XTO) and biconic (AAS) surfaces are read");
+        code_v("GRT") ==
+        "a.seq: line 4: GRT: conicoids, even aspheres, cylinders (CYL), toric (YTO, XTO), biconic (AAS) and "
+        "Q-type (SPS QBF, SPS QCN) surfaces are read");
     CHECK(code_v("CIR ROT 2") ==
           "a.seq: line 4: CIR ROT: rims (CIR, CLR, EDG), holes (HOL) and obscurations (OBS) are read");
     CHECK(code_v("CIR 9; CIR OBS 9") == "a.seq: line 3: its obscuration is as large as its aperture");
@@ -285,14 +286,14 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
     CHECK(code_v("CIR EDG 9; CIR CLR 8; CIR HOL 2").empty());
     for (const std::string word :
          {"CIR S1 5", "CIR S1 HOL 5", "ADE S1 10", "STO S1", "GLA S1 NBK7", "K S1 -1", "THI S1..2 3",
-          "RDY SI 9", "DAR S1", "CUY S'MAIN' 0.1", "RMD SA REFL"}) {
+          "RDY SI 9", "DAR S1", "CYL S1", "SPS S1 QBF", "SCO S1 C3 1", "CUY S'MAIN' 0.1", "RMD SA REFL"}) {
         CAPTURE(word);
         const std::string message = ": " + word.substr(0, word.find(' ', word.find(' ') + 1)) +
                                     ": commands of a surface are read behind it, without its name";
         CHECK(code_v(word) == "a.seq: line 4" + message);
         CHECK(code_v("SI 0 0\n" + word) == "a.seq: line 5" + message);
     }
-    CHECK(code_v("SI 0 0\nCYL S1").starts_with("a.seq: line 5: CYL: "));
+    CHECK(code_v("SI 0 0\nGRT S1").starts_with("a.seq: line 5: GRT: "));
     CHECK(code_v("THC S1 0; COM S1 main").empty());
     CHECK(lens_refusal("RDM\nSO 0 1E13\nADE 0; YDE 2\nS -100 -50 REFL\nSI 0 0\n", "a.seq") ==
           "a.seq: line 3: the object (SO) is tilted or decentred: that is not read");

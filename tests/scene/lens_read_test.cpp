@@ -152,7 +152,7 @@ TEST_CASE("a CODE V sequence is read in radii and in curvatures, over lines and 
     CHECK(refusal(unknown, "a.seq").starts_with("a.seq: line 5: unknown glass 'NBK6'; did you mean"));
     known.replace(known.find("RDM"), 3, "CUM");
     CHECK(parse_code_v(known, "a.seq").rows[1].side.curvature == -100);
-    for (const std::string word : {"REFL", "SPS XYP", "H 1e-9", "CYL", "GLB S1", "RMD TIR", "YDE three"}) {
+    for (const std::string word : {"REFL", "SPS XYP", "H 1e-9", "GRT", "GLB S1", "RMD TIR", "YDE three"}) {
         std::string bent = known;
         bent.insert(bent.find("ASP"), word + "\n");
         CHECK(refusal(bent, "a.seq").starts_with("a.seq: line 9: "));

@@ -1,4 +1,5 @@
 // Spline patches: exact conversions, derivatives, blends, and the polygons of objects.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -238,7 +239,7 @@ TEST_CASE("edges without a neighbour are counted, points are no edges", "[scene]
     const auto count = [](const std::vector<BezierPatch>& patches) {
         std::vector<RationalPatch> all;
         for (const BezierPatch& one : patches) all.push_back(beziers_of(spline_of(one)).at(0));
-        return count_open_edges(all);
+        return find_open_edges(all).open;
     };
     CHECK(count({patch}) == 4);
     BezierPatch beside = random_patch(9, 0.4, 1);
@@ -249,8 +250,8 @@ TEST_CASE("edges without a neighbour are counted, points are no edges", "[scene]
     BezierPatch cap = patch;
     for (std::size_t k = 1; k < 4; ++k) cap[k] = cap[0];
     CHECK(count({cap}) == 3);
-    CHECK(count_open_edges(beziers_of(nurbs_sphere(2))) == 0);
-    CHECK(count_open_edges(beziers_of(nurbs_torus(3, 1))) == 0);
+    CHECK(find_open_edges(beziers_of(nurbs_sphere(2))).open == 0);
+    CHECK(find_open_edges(beziers_of(nurbs_torus(3, 1))).open == 0);
 
     const Scene scene = load_text(patch_scene(bezier_text(patch), R"("role": "optic", "material": "glass")"));
     bool warned = false;
@@ -263,6 +264,38 @@ TEST_CASE("edges without a neighbour are counted, points are no edges", "[scene]
     const Box bounds = make_scene_info(scene).meshes[0].bounds;
     CHECK(length(bounds.low - hull.low) < 1e-5);  // the scene's text has six digits
     CHECK(length(bounds.high - hull.high) < 1e-5);
+}
+
+TEST_CASE("gaps between edges of patches are counted, whatever the way that the edges run",
+          "[scene][patches]") {
+    const BezierPatch patch = random_patch(8, 0.4, 1);
+    BezierPatch along = random_patch(9, 0.4, 1), against = along;
+    for (std::size_t j = 0; j < 4; ++j) {
+        along[4 * j] = patch[4 * j + 3];
+        against[4 * j] = patch[4 * (3 - j) + 3];
+    }
+    const auto near = [&](BezierPatch beside, double gap) {
+        for (std::size_t j = 0; j < 4; ++j) beside[4 * j] += Vec3(0, 0, gap);
+        const OpenEdges edges =
+            find_open_edges({beziers_of(spline_of(patch)).at(0), beziers_of(spline_of(beside)).at(0)});
+        CHECK(edges.open == (gap == 0 ? 6 : 8));
+        return edges.near;
+    };
+    for (const BezierPatch& beside : {along, against}) {
+        CHECK(near(beside, 0) == 0);
+        CHECK(near(beside, 1e-7) == 2);
+        CHECK(near(beside, 1e-3) == 2);
+        CHECK(near(beside, 0.1) == 0);
+    }
+    BezierPatch beside = along;
+    beside[0] += Vec3(1e-3, 0, 0);
+    for (const std::string role : {R"("role": "optic", "material": "glass")", R"("role": "object")"}) {
+        CAPTURE(role);
+        const Scene scene = load_text(patch_scene(bezier_text(patch) + ", " + bezier_text(beside), role));
+        CHECK(std::count(scene.warnings.begin(), scene.warnings.end(),
+                         "room.json: /meshes/0: 2 edges of patches lie within a hundredth of their length of "
+                         "another's and do not agree with it: there are gaps") == 1);
+    }
 }
 
 TEST_CASE("patches that cannot be are refused with their place", "[scene][patches][bad-input]") {

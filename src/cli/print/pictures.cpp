@@ -51,6 +51,7 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
             {"outline_pixels", picture.statistics.outline_pixels},
             {"marks", picture.statistics.marks},
             {"hidden_marks", picture.statistics.hidden_marks},
+            {"crowded_marks", picture.statistics.crowded_marks},
             {"unseen_marks", picture.statistics.unseen_marks},
             {"fragment_pixels", picture.statistics.fragment_pixels},
             {"fragments", picture.statistics.fragments},

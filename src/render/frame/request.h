@@ -160,9 +160,9 @@ struct LayerStatistics {
     // their fragments; of the rays that these shade, those that had to be shaded at each sample, and the
     // pixels that have such rays.
     std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0, pixels_shaded_by_sample = 0;
-    // Images of points and labels that are painted, those on the film that something hides, and the points
-    // and labels that have no image.
-    std::size_t marks = 0, hidden_marks = 0, unseen_marks = 0;
+    // Images of points and labels that are painted, those on the film that something hides, those of labels
+    // that give way to others, and the points and labels that have no image.
+    std::size_t marks = 0, hidden_marks = 0, crowded_marks = 0, unseen_marks = 0;
     std::vector<OpticProbes> probes;  // per optic, where facets are used that are worthwhile
 
     /// 0 where no pixel is shaded by fragments.

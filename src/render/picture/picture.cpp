@@ -40,7 +40,10 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
             warn("the scene has no optic: only the direct view is drawn");
         else if (statistics.optic_pixels == 0)
             warn("no pixel sees an optic: they are off screen, behind the camera, or hidden");
-        if (world.objects.size() == 0) warn("the scene has no objects: rays see only the background");
+        const Scene& scene = world.scene;
+        if (world.objects.size() == 0 && scene.volumes.empty() && scene.points.empty() &&
+            scene.labels.empty())
+            warn("the scene has no objects: rays see only the background");
     }
     if (statistics.pixels_without_ray > 0)
         warn(
@@ -253,6 +256,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     picture.statistics.probes = probes_of(world, *viewer);
     picture.statistics.marks = marks.marks.size();
     picture.statistics.hidden_marks = marks.hidden;
+    picture.statistics.crowded_marks = marks.crowded_out;
     picture.statistics.unseen_marks = marks.unseen;
     describe(world, request, picture.image);
     if (warn) {

@@ -203,13 +203,60 @@ PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n) {
     return mesh;
 }
 
-std::size_t count_open_edges(std::vector<RationalPatch> patches) {
+namespace {
+
+/// A side that no other runs along, by places on it.
+struct OpenSide {
+    std::size_t patch = 0;
+    Vec3 first{0}, middle{0}, last{0};
+
+    double length_of() const { return length(middle - first) + length(last - middle); }
+    bool lies_at(const OpenSide& other, double tolerance) const {
+        const auto near = [&](const Vec3& a, const Vec3& b) { return length(a - b) <= tolerance; };
+        return near(middle, other.middle) && ((near(first, other.first) && near(last, other.last)) ||
+                                              (near(first, other.last) && near(last, other.first)));
+    }
+};
+
+OpenSide side_of(const std::vector<RationalPatch>& patches, std::size_t p, std::size_t side) {
+    constexpr std::array<Vec2, 4> kCorners{Vec2(0, 0), {1, 0}, {1, 1}, {0, 1}};
+    const Vec2 from = kCorners[side], to = kCorners[(side + 1) % 4];
+    const double extent = extent_of(patches[p]);
+    const auto at = [&](double t) {
+        return evaluate_first_order(patches[p], from + t * (to - from), extent).position;
+    };
+    return {p, at(0), at(0.5), at(1)};
+}
+
+std::vector<OpenSide> open_sides(std::vector<RationalPatch> patches) {
     const std::vector<FaceBorder> borders = join_patches(patches);
-    std::size_t open = 0;
+    std::vector<OpenSide> open;
     for (std::size_t p = 0; p < patches.size(); ++p)
         for (std::size_t side = 0; side < 4; ++side)
-            if (borders[p].sides[side].edge == kNone && !is_collapsed(patches[p], side)) ++open;
+            if (borders[p].sides[side].edge == kNone && !is_collapsed(patches[p], side))
+                open.push_back(side_of(patches, p, side));
     return open;
+}
+
+}  // namespace
+
+OpenEdges find_open_edges(const std::vector<RationalPatch>& patches) {
+    std::vector<OpenSide> open = open_sides(patches);
+    std::sort(open.begin(), open.end(),
+              [](const OpenSide& a, const OpenSide& b) { return a.middle.x < b.middle.x; });
+    std::vector<bool> is_near(open.size());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        const double tolerance = kNearEdge * open[i].length_of();
+        const auto is_beside = [&](std::size_t j) {
+            return std::fabs(open[j].middle.x - open[i].middle.x) <= tolerance;
+        };
+        const auto look_at = [&](std::size_t j) {
+            if (open[j].patch != open[i].patch && open[i].lies_at(open[j], tolerance)) is_near[i] = true;
+        };
+        for (std::size_t j = i + 1; j < open.size() && is_beside(j) && !is_near[i]; ++j) look_at(j);
+        for (std::size_t j = i; j-- > 0 && is_beside(j) && !is_near[i];) look_at(j);
+    }
+    return {open.size(), static_cast<std::size_t>(std::count(is_near.begin(), is_near.end(), true))};
 }
 
 }  // namespace trilens

@@ -61,7 +61,15 @@ void turn_around(SplineGrid& spline);
 /// n x n quads per patch, triangles where an edge is one point, with the patch's normals and uv.
 PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n);
 
+/// How near edges lie whose ends and middles are this share of their length apart.
+inline constexpr double kNearEdge = 0.01;
+
 /// Edges that no other edge runs along, as join_patches finds them; those that are one point do not count.
-std::size_t count_open_edges(std::vector<RationalPatch> patches);
+struct OpenEdges {
+    std::size_t open = 0;
+    std::size_t near = 0;  // of them: those that lie near one of another patch, with a gap between
+};
+
+OpenEdges find_open_edges(const std::vector<RationalPatch>& patches);
 
 }  // namespace trilens

@@ -1,13 +1,13 @@
 // Reads what CODE V's sequences say of their surfaces: commands between semicolons, lines that go on after
 // '&'.
 #include <algorithm>
-#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/util/error.h"
 #include "lens/dispersion.h"
+#include "scene/formats/code_v_form.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/lens_lines.h"
 
@@ -15,18 +15,21 @@ namespace trilens {
 namespace {
 
 /// Commands of a surface that are read, but for its terms (A to J) and tilts.
-constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR", "STO",
-                                              "K",   "DAR", "BEN", "REV", "YTO", "XTO", "AAS",
-                                              "RDX", "CUX", "KX",  "KY",  "SPH", "CON", "ASP"};
+constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD", "CIR", "STO", "K",
+                                              "DAR", "BEN", "REV", "YTO", "XTO", "AAS", "RDX", "CUX",
+                                              "KX",  "KY",  "SPH", "CON", "ASP", "CYL", "SPS", "SCO"};
 
 /// What an anamorphic asphere has beyond its two conic sections.
 constexpr std::string_view kAnamorphicTerms[] = {"AR", "BR", "CR", "DR", "AP", "BP", "CP", "DP"};
 
+/// What has one number, and says something of a surface' form.
+constexpr std::string_view kFormNumbers[] = {"K", "RDX", "CUX", "KX", "KY", "A",
+                                             "B", "C",   "D",   "E",  "F",  "G"};
+
 /// Commands of surfaces of other kinds, that neither refract nor reflect, or whose tilts are not
 /// about their own vertex.
-constexpr std::string_view kRefused[] = {"REFL", "CYL", "SPS", "GRT", "HOE", "DIF", "NSS",
-                                         "REX",  "REY", "ELX", "ELY", "GRX", "ADX", "ADY",
-                                         "THG",  "XOD", "YOD", "ZOD", "GLB", "RET"};
+constexpr std::string_view kRefused[] = {"REFL", "GRT", "HOE", "DIF", "NSS", "REX", "REY", "ELX", "ELY",
+                                         "GRX",  "ADX", "ADY", "THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
 /// Those of them that say where a surface is.
 constexpr std::string_view kPlacing[] = {"THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
 
@@ -38,26 +41,6 @@ struct WrittenTilt {
     LensTilt tilt;
     std::string place = {};  // of the last command that says something
 };
-
-/// Forms of surfaces: a surface has one.
-constexpr std::pair<std::string_view, SideForm> kForms[] = {
-    {"SPH", SideForm::kRound},  {"CON", SideForm::kRound},  {"ASP", SideForm::kRound},
-    {"YTO", SideForm::kToricY}, {"XTO", SideForm::kToricX}, {"AAS", SideForm::kBiconic}};
-
-/// What only some forms have, with its command's place.
-struct WrittenNumber {
-    double value = 0;
-    std::string place = {};
-};
-
-/// What a surface says of its form.
-struct WrittenForm {
-    std::string name = {}, place = {};
-    std::optional<WrittenNumber> x_curvature = {}, x_conic = {}, y_conic = {}, term = {};
-};
-
-/// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
-constexpr std::string_view kTerms = "ABCDEFG";
 
 template <std::size_t kCount>
 bool is_among(const std::string_view (&words)[kCount], std::string_view word) {
@@ -98,7 +81,7 @@ class SequenceReader : LensLines {
             throw InputError(lens_.file, "", "has no surfaces from SO to SI: it is no CODE V sequence");
         for (std::size_t i = 0; i < lens_.rows.size(); ++i) {
             bend(lens_.rows[i], tilts_[i]);
-            set_form(lens_.rows[i], forms_[i]);
+            forms_[i].shape(lens_.rows[i].side, lens_.file);
         }
         if (object_tilt_.tilt.decentre != Vec3(0) || object_tilt_.tilt.degrees != Vec3(0))
             throw InputError(lens_.file, object_tilt_.place,
@@ -174,55 +157,22 @@ class SequenceReader : LensLines {
         }
     }
 
-    static double curvature_of(double value, bool is_curvature) {
-        return is_curvature ? value : value == 0 ? 0 : 1 / value;
-    }
-
     void set_curvature(double value, bool is_curvature) {
-        lens_.rows.back().side.curvature = curvature_of(value, is_curvature);
+        lens_.rows.back().side.curvature = is_curvature ? value : value == 0 ? 0 : 1 / value;
     }
 
-    /// What stands of x and of y is known at the end alone. A profile along x has RDX or CUX, and is turned
-    /// at RDY or CUY.
-    void set_form(LensRow& row, const WrittenForm& written) const {
-        LensSide& side = row.side;
-        const bool is_biconic = side.form == SideForm::kBiconic;
-        const auto refuse = [&](const std::optional<WrittenNumber>& number, const std::string& why) {
-            if (number) throw InputError(lens_.file, number->place, why);
-        };
-        if (is_round(side))
-            refuse(written.x_curvature, "RDX and CUX are read of toric and biconic surfaces (YTO, XTO, AAS)");
-        if (!is_biconic)
-            for (const auto* conic : {&written.x_conic, &written.y_conic})
-                refuse(*conic, "KX and KY are read of biconic surfaces (AAS)");
-        if (is_biconic) refuse(written.term, "A to G are not of an anamorphic asphere (AAS)");
-        if (is_biconic && !written.x_curvature)
-            throw InputError(lens_.file, written.place, "AAS needs RDX or CUX");
-        if (written.x_curvature) side.across_curvature = written.x_curvature->value;
-        if (written.x_conic) side.across_conic = written.x_conic->value;
-        if (written.y_conic) side.conic = written.y_conic->value;
-        if (side.form == SideForm::kToricX) std::swap(side.curvature, side.across_curvature);
-    }
-
-    /// False where the command names none. Which of two forms would hold is not known here.
-    bool take_form(const std::string& key) {
-        WrittenForm& form = forms_.back();
-        for (const auto& [name, kind] : kForms) {
-            if (name != key) continue;
-            if (!form.name.empty() && form.name != key)
-                fail(key + ": the surface has a form already, " + form.name + " in " + form.place);
-            form.name = key;
-            form.place = place();
-            lens_.rows.back().side.form = kind;
-            return true;
-        }
+    /// "SPS QBF": special surfaces have their kind in the second word.
+    bool take_form(const std::string& key, const std::vector<std::string_view>& words) {
+        const std::string kind = words.size() > 1 ? in_capitals(words[1]) : "";
+        const std::string name = key == "SPS" ? key + " " + kind : key;
+        if (forms_.back().take_form(name, lens_.file, place())) return true;
+        if (key == "SPS") fail(name + ": of special surfaces Q-type ones (SPS QBF, SPS QCN) are read");
         return false;
     }
 
-    void take_term(const std::string& key, double value) {
-        const std::size_t term = kTerms.find(key[0]);
-        lens_.rows.back().side.coefficients[term + 1] = value;
-        if (value != 0) forms_.back().term = WrittenNumber{value, place()};
+    void take_coefficient(const std::vector<std::string_view>& words) {
+        if (words.size() < 2) fail("SCO needs a coefficient");
+        forms_.back().take_coefficient(in_capitals(words[1]), {number(words, 2), place()}, lens_.file);
     }
 
     /// "NSK16_SCHOTT", "'MINE'": quotes and the maker's name are left out, and the hyphen behind N or P is
@@ -250,7 +200,9 @@ class SequenceReader : LensLines {
         const bool is_named = words.size() > 1 && names_surface(words[1]);
         if (is_among(kRefused, key) &&
             (part_ == Part::kLens || is_named || (part_ != Part::kNone && is_among(kPlacing, key))))
-            fail(key + ": conicoids, even aspheres, toric (YTO, XTO) and biconic (AAS) surfaces are read");
+            fail(key +
+                 ": conicoids, even aspheres, cylinders (CYL), toric (YTO, XTO), biconic (AAS) and Q-type " +
+                 "(SPS QBF, SPS QCN) surfaces are read");
         const bool is_term = key.size() == 1 && key[0] >= 'A' && key[0] <= 'J' && key != "I";
         if (part_ == Part::kLens && !is_named && is_among(kAnamorphicTerms, key) && number(words, 1) != 0)
             fail(key + ": of an anamorphic asphere (AAS) its conic sections are read");
@@ -269,9 +221,8 @@ class SequenceReader : LensLines {
     }
 
     void take_of_surface(const std::string& key, const std::vector<std::string_view>& words) {
-        if (take_form(key)) return;
+        if (take_form(key, words)) return;
         LensRow& row = lens_.rows.back();
-        WrittenForm& form = forms_.back();
         if (key == "RDY")
             set_curvature(number(words, 1), false);
         else if (key == "CUY")
@@ -286,14 +237,10 @@ class SequenceReader : LensLines {
             set_aperture(words);
         else if (key == "STO")
             row.stop = true;
-        else if (key == "K")
-            row.side.conic = number(words, 1);
-        else if (key == "RDX" || key == "CUX")
-            form.x_curvature = WrittenNumber{curvature_of(number(words, 1), key == "CUX"), place()};
-        else if (key == "KX" || key == "KY")
-            (key == "KX" ? form.x_conic : form.y_conic) = WrittenNumber{number(words, 1), place()};
-        else if (key.size() == 1 && kTerms.find(key[0]) != std::string_view::npos)
-            take_term(key, number(words, 1));
+        else if (key == "SCO")
+            take_coefficient(words);
+        else if (is_among(kFormNumbers, key))
+            forms_.back().take_number(key, {number(words, 1), place()});
         else if ((key == "H" || key == "J") && number(words, 1) != 0)
             fail(key + " is beyond r^16");
     }
@@ -376,7 +323,7 @@ class SequenceReader : LensLines {
 
     WrittenTilt object_tilt_, image_tilt_;
     std::vector<WrittenTilt> tilts_;   // of the rows
-    std::vector<WrittenForm> forms_;   // of the rows
+    std::vector<CodeVForm> forms_;     // of the rows
     std::vector<double> wavelengths_;  // of private glasses
     Part part_ = Part::kNone;
     bool by_curvature_ = false, ended_ = false, in_private_ = false;

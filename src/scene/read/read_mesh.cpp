@@ -182,7 +182,7 @@ namespace {
 PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, std::size_t& uncovered_faces,
                                  Reading& reading) {
     if (node.has("patches")) {
-        PolygonMesh polygons = read_object_patches(node, mesh);
+        PolygonMesh polygons = read_object_patches(node, mesh, reading);
         set_shading(polygons, read_shading(node));
         return polygons;
     }

@@ -152,21 +152,33 @@ std::vector<RationalPatch> read_patches(const Node& mesh) {
     return patches;
 }
 
+/// How many edges are open at all.
+std::size_t warn_of_gaps(const Node& node, const std::vector<RationalPatch>& patches, Reading& reading) {
+    const OpenEdges edges = find_open_edges(patches);
+    if (edges.near > 0)
+        reading.warn(node.place, std::to_string(edges.near) +
+                                     " edges of patches lie within a hundredth of their length of another's "
+                                     "and do not agree with it: there are gaps");
+    return edges.open;
+}
+
 }  // namespace
 
 void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& reading) {
     mesh.patches = read_patches(node);
     mesh.of_patches = true;
     mesh.face_count = mesh.patches.size();
-    if (const std::size_t open = is_glass ? count_open_edges(mesh.patches) : 0; open > 0)
+    const std::size_t open = warn_of_gaps(node, mesh.patches, reading);
+    if (is_glass && open > 0)
         reading.warn(node.place,
                      std::to_string(open) +
                          " edges of patches have no other along them: this glass is one interface, "
                          "or a body with holes");
 }
 
-PolygonMesh read_object_patches(const Node& node, Mesh& mesh) {
+PolygonMesh read_object_patches(const Node& node, Mesh& mesh, Reading& reading) {
     const std::vector<RationalPatch> patches = read_patches(node);
+    warn_of_gaps(node, patches, reading);
     mesh.of_patches = true;
     mesh.face_count = patches.size();
     return patch_polygons(patches, mesh.resolution);

@@ -70,18 +70,19 @@ std::shared_ptr<const HeightGrid> read_heights(const Node& node, Terrain& terrai
     if (!std::filesystem::exists(terrain.file, ignored))
         node.fail("the picture '" + terrain.file + "' does not exist");
     TRILENS_CHECK(reading.textures.heights_from_file, "a scene with terrains needs a reader of heights");
+    std::shared_ptr<const HeightGrid> heights;
     try {
-        auto heights = std::make_shared<const HeightGrid>(reading.textures.heights_from_file(terrain.file));
-        if (heights->columns < 2 || heights->rows < 2)
-            node.fail("'" + terrain.file + "' has " + std::to_string(heights->columns) + " x " +
-                      std::to_string(heights->rows) + " samples: a terrain has at least 2 x 2");
-        if (heights->channels > 1)
-            reading.warn(node.place, "'" + terrain.file + "' has " + std::to_string(heights->channels) +
-                                         " channels: the heights are the first one");
-        return heights;
+        heights = std::make_shared<const HeightGrid>(reading.textures.heights_from_file(terrain.file));
     } catch (const InputError& error) {
         node.fail(error.what());
     }
+    if (heights->columns < 2 || heights->rows < 2)
+        node.fail("'" + terrain.file + "' has " + std::to_string(heights->columns) + " x " +
+                  std::to_string(heights->rows) + " samples: a terrain has at least 2 x 2");
+    if (heights->channels > 1)
+        reading.warn(node.place, "'" + terrain.file + "' has " + std::to_string(heights->channels) +
+                                     " channels: the heights are the first one");
+    return heights;
 }
 
 /// Of places of a mesh's own frame.

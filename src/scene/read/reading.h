@@ -129,10 +129,10 @@ void place_mesh(PolygonMesh& polygons, const Node& mesh);
 bool waits_for_views(const Node& mesh, const Reading& reading);
 /// The triangles of an object that has heights, without materials; warns of holes.
 void read_terrain(const Node& node, Mesh& mesh, Reading& reading);
-/// The patches of an optic as its cage; warns of glass whose patches do not close.
+/// The patches of an optic as its cage; warns of gaps, and of glass whose patches do not close.
 void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& reading);
-/// The patches of an object as polygons, in the world.
-PolygonMesh read_object_patches(const Node& node, Mesh& mesh);
+/// The patches of an object as polygons, in the world; warns of gaps.
+PolygonMesh read_object_patches(const Node& node, Mesh& mesh, Reading& reading);
 /// Divides an object's triangles as its `bakedLight` says, and gives them that light. Throws InputError where
 /// it is of another mesh.
 void read_baked_light(const Node& baked, ObjectMesh& object);
