@@ -87,9 +87,8 @@ struct BeamLight::Piece {
 Vec3 BeamLight::left_of(const LightHistory& history, const Vec3& origin, const Receiver& receiver) const {
     const Vec3 left = body_transmittance(*space_.optics, history.medium, length(origin - receiver.point));
     if (!space_.veil) return left;
-    // What lies on the surface of glass is outside; a segment takes in what is at its ends.
     const Vec3 way = origin - receiver.lifted;
-    const double inset = history.medium == kNone ? 0 : 2 * same_place(origin) / length(way);
+    const double inset = history.has_start ? 0 : 2 * same_place(origin) / length(way);
     return space_.veil({receiver.lifted, (1 - inset) * way}).through * left;
 }
 
@@ -178,17 +177,20 @@ Vec3 BeamLight::irradiance(const Receiver& receiver) const {
 
 namespace {
 
-/// Exact arrivals this near to each other on the window are one.
+/// Exact arrivals whose rays leave the light so near to each other are one, whichever window they come
+/// through: a share of the scene's size, and an angle.
 constexpr double kSameArrival = 1e-7;
 /// How near an exact path comes to its point, as a share of the scene's size.
 constexpr double kExact = 1e-11;
 
-bool is_known(const std::vector<ExactArrival>& known, const ExactArrival& one) {
-    for (const ExactArrival& other : known)
-        if (other.single.path.history() == one.single.path.history() &&
-            length(other.place - one.place) < kSameArrival)
-            return true;
-    return false;
+bool is_known(const std::vector<ExactArrival>& known, const ExactArrival& one, double size) {
+    const auto is_same = [&](const ExactArrival& other) {
+        return other.single.path.history() == one.single.path.history() &&
+               length(other.from.origin - one.from.origin) < kSameArrival * size &&
+               length(normalize_or_zero(other.from.direction) - normalize_or_zero(one.from.direction)) <
+                   kSameArrival;
+    };
+    return std::any_of(known.begin(), known.end(), is_same);
 }
 
 }  // namespace
@@ -224,7 +226,7 @@ std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) co
                              fallen.part[i].weights[k].y * places[1] +
                              fallen.part[i].weights[k].z * places[2];
             const auto arrival = map.arrive(corners, fallen.part[i], plane, kExact * space_.size);
-            if (arrival && !is_known(arrivals, *arrival) && comes(*arrival, receiver))
+            if (arrival && !is_known(arrivals, *arrival, space_.size) && comes(*arrival, receiver))
                 arrivals.push_back(*arrival);
         }
     });

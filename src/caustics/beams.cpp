@@ -45,13 +45,13 @@ Vec3 beam_integral(const Beams& beams, const LightBeam& beam, const Of& of) {
     return beam.measure / 3 * sum;
 }
 
-using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<VeilSurface>, int, Id>;
+using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<VeilSurface>, int, Id, bool>;
 
 HistoryKey key_of(const LightHistory& history) {
     std::vector<std::uint64_t> steps;
     for (const Step& step : history.steps)
         steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
-    return {std::move(steps), history.veils, history.colours, history.medium};
+    return {std::move(steps), history.veils, history.colours, history.medium, history.has_start};
 }
 
 class BeamMaker {

@@ -17,7 +17,7 @@ Vec3 share_at_first(const std::vector<Branch>& ways, const PathSegment& segment)
 struct Stretch {
     const Ray& ray;
     double length = 0;
-    Id medium = kNone;
+    bool has_start = true, has_end = true;  // what lies where it starts is on it, and where it ends
 };
 
 /// Takes from light what blended surfaces on a stretch keep, and adds them to `veils`.
@@ -26,9 +26,10 @@ void come_through(const LightSpace& space, const Stretch& stretch, Vec3& light,
     if (!space.veil) return;
     const auto& [origin, direction] = stretch.ray;
     const Vec3 end = origin + stretch.length * direction;
-    // What lies on the surface of glass is outside; a segment takes in what is at its ends.
-    const bool in_glass = stretch.medium != kNone;
-    const double after = in_glass ? 2 * same_place(origin) : 0, before = in_glass ? 2 * same_place(end) : 0;
+    // A segment takes in what is at its ends.
+    const double after = stretch.has_start ? 0 : 2 * same_place(origin),
+                 before = stretch.has_end ? 0 : 2 * same_place(end);
+    if (after + before > stretch.length) return;
     const Veil veil = space.veil({end - before * direction, -(stretch.length - before - after) * direction});
     light *= veil.through;
     veils.insert(veils.end(), veil.surfaces.begin(), veil.surfaces.end());
@@ -41,6 +42,7 @@ LightPath continued(LightHistory so_far, const PathSegment& segment, const Vec3&
     path.steps.push_back(segment.step);
     path.colours = segment.colours;
     path.medium = segment.medium;
+    path.has_start = segment.has_start;
     path.ray = segment.ray;
     path.arriving = arriving;
     if (path.colours != kAllColours) {
@@ -71,7 +73,9 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     const Id medium = active_medium(world, around);
     Vec3 arriving = source.strength(ray.direction) * body_transmittance(world, medium, met->distance);
     std::vector<VeilSurface> first_veils;
-    come_through(space, {ray, met->distance, medium}, arriving, first_veils);
+    const bool in_air = medium == kNone;
+    come_through(space, {ray, met->distance, in_air, in_air || world.optics[first].mirror}, arriving,
+                 first_veils);
     std::vector<Vec3> carried;  // per segment: its share at the first optic, less what veils behind it keep
     for (const PathSegment& segment : followed.segments) {
         LightHistory so_far;
@@ -82,7 +86,9 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
             const PathSegment& before = followed.segments[segment.parent];
             so_far = found.paths[segment.parent];
             carried.push_back(carried[segment.parent]);
-            come_through(space, {before.ray, before.next, before.medium}, carried.back(), so_far.veils);
+            const bool has_end = before.medium == kNone || before.to_mirror;
+            come_through(space, {before.ray, before.next, before.has_start, has_end}, carried.back(),
+                         so_far.veils);
         }
         found.paths.push_back(continued(std::move(so_far), segment, arriving));
         found.paths.back().light = arriving * carried.back() * segment.weight;
@@ -108,12 +114,14 @@ std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSour
     SinglePath single;
     LightPath& path = single.path;
     path.light = source.strength(ray.direction);
+    path.medium = active_medium(world, leaving.media);
+    path.has_start = path.medium == kNone;
     for (const Step& step : like.steps) {
         const std::optional<NextOptic> met = next_optic(world, leaving);
         if (!met || met->meeting.optic != step.optic) return std::nullopt;
-        const Id medium = active_medium(world, leaving.media);
-        path.light *= body_transmittance(world, medium, met->distance);
-        come_through(space, {leaving.ray, met->distance, medium}, path.light, path.veils);
+        path.light *= body_transmittance(world, path.medium, met->distance);
+        const bool has_end = path.medium == kNone || world.optics[step.optic].mirror;
+        come_through(space, {leaving.ray, met->distance, path.has_start, has_end}, path.light, path.veils);
         if (path.steps.empty()) path.arriving = path.light;
         const std::vector<Branch> ways = branches(world, met->meeting, leaving.media, path.colours);
         const Branch* way = branch_of(ways, step, like.colours);
@@ -123,9 +131,11 @@ std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSour
         path.light *= way->weight;
         single.corners.push_back(met->meeting.point);
         leaving = {{met->meeting.point, way->direction}, step.optic, way->media};
+        const LegBefore before{path.medium, met->distance, met->meeting.point, path.has_start};
+        path.medium = active_medium(world, leaving.media);
+        path.has_start = has_start(world, step, path.medium, before);
     }
     path.ray = leaving.ray;
-    path.medium = active_medium(world, leaving.media);
     single.media = leaving.media;
     if (path.history() != like) return std::nullopt;
     return single;

@@ -22,6 +22,7 @@ struct LightHistory {
     std::vector<Step> steps;  // meetings with optics up to its stretch's start, at least one
     Colours colours = kAllColours;
     Id medium = kNone;                 // in whose glass the stretch runs; kNone: air
+    bool has_start = true;             // see has_start(), of the stretch
     std::vector<VeilSurface> veils{};  // blended surfaces that it came through before
 
     bool operator==(const LightHistory&) const = default;

@@ -273,6 +273,10 @@ PathBuilder first_optic_paths(ProbeContext context, const FirstPaths& first) {
         node.principal.assign(facets, 1);
         node.touches.assign(facets, 0);
         node.rests.assign(facets, 0);
+        node.to_mirror.assign(facets, 0);
+        node.has_start.assign(facets,
+                              has_start(*build.in.context.world, segment.step, segment.medium,
+                                        {active_medium(*build.in.context.world, around), kUnbounded}));
         node.next.assign(mesh.rays.size(), kUnbounded);
         node.weight.assign(mesh.rays.size(), Vec3(1));
         return node;

@@ -120,6 +120,8 @@ struct PathNode {
     std::vector<char> principal;  // per facet: see PathSegment
     std::vector<char> touches;    // per facet: an object lies on the next optic, at its middle
     std::vector<char> rests;      // per facet: see rests_on_object
+    std::vector<char> to_mirror;  // per facet: see PathSegment
+    std::vector<char> has_start;  // per facet: see PathSegment
     std::vector<double> next;     // per corner: t of the next optic; infinity: none
     std::vector<Vec3> weight;     // per corner: see PathSegment::weight
     // Per corner: by how much its screen position is longer than the camera's, see farther() in path_probe.h;

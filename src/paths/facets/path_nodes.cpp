@@ -100,6 +100,8 @@ void append_part(PathBuild& build, Id leaf, FacetPart& part) {
         node.principal.push_back(history.principal);
         node.touches.push_back(touches_object(build.in, part, h));
         node.rests.push_back(rests_on_object(part, h));
+        node.to_mirror.push_back(history.to_mirror);
+        node.has_start.push_back(history.has_start);
     }
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/raymesh/triangle_scene.h"
+
 namespace trilens {
 namespace {
 
@@ -26,6 +28,15 @@ Vec3 first_weight(Colours colours) {
     Vec3 weight(0);
     weight[colours] = 1;
     return weight;
+}
+
+LegBefore before_paths(const PathWorld& world, const PathStart& start) {
+    return {active_medium(world, start.around), start.way, start.first.point};
+}
+
+LegBefore leg_of(const PathSegment& segment) {
+    return {segment.medium, segment.next, segment.ray.origin + segment.next * segment.ray.direction,
+            segment.has_start};
 }
 
 /// A branch that waits to be followed.
@@ -63,6 +74,7 @@ class Follower {
     const FollowParams& params_;
     FollowedPaths followed_;
     std::vector<Pending> waiting_;
+    LegBefore camera_leg_;
     std::array<Vec3, 2> faint_behind_{Vec3(0), Vec3(0)};  // of paths that reflect first, and refract
 };
 
@@ -126,6 +138,9 @@ void Follower::run(const Pending& from) {
     segment.colours = from.branch.colours;
     segment.depth = from.depth;
     segment.medium = active_medium(world_, from.branch.media);
+    segment.has_start =
+        has_start(world_, segment.step, segment.medium,
+                  from.parent == kNone ? camera_leg_ : leg_of(followed_.segments[from.parent]));
     segment.ray = {from.point, from.branch.direction};
     segment.way = from.way;
     segment.first_weight = from.first_weight;
@@ -155,7 +170,10 @@ void Follower::run(const Pending& from) {
         if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
         next.reset();
     }
-    if (next) segment.next = next->distance;
+    if (next) {
+        segment.next = next->distance;
+        segment.to_mirror = world_.optics[next->meeting.optic].mirror;
+    }
     segment.ends = !next;
     followed_.segments.push_back(segment);
     if (!next) return;
@@ -165,6 +183,7 @@ void Follower::run(const Pending& from) {
 }
 
 FollowedPaths Follower::follow(const PathStart& begin) {
+    camera_leg_ = before_paths(world_, begin);
     start(begin);
     while (!waiting_.empty()) {
         const Pending from = waiting_.back();
@@ -236,6 +255,13 @@ std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& le
         if (!first || turn_of(world, one) < turn_of(world, *first)) first = &one;
     }
     return *first;
+}
+
+bool has_start(const PathWorld& world, const Step& step, Id medium, const LegBefore& before) {
+    if (medium == kNone) return true;
+    if (step.event == Event::kReflect) return world.optics[step.optic].mirror;
+    if (before.medium == kNone) return false;
+    return before.length > 2 * same_place(before.end) || before.has_start;
 }
 
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params) {

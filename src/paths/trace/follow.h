@@ -30,12 +30,14 @@ struct PathSegment {
     // Distance to an optic that lies on an object where it is met, or infinity; the object is what is seen
     // there.
     double rest = std::numeric_limits<double>::infinity();
-    bool front = true;   // its start was met from the front
-    Vec3 refraction{0};  // see Branch, at its start
-    double turned = 1;   // cosine of the angle between the ray that arrived at its start and the surface
-    double lobe = 0;     // see Branch, summed over the rough surfaces so far
-    Hit hit;             // where objects are asked for: the first before the next optic, t a distance
-    bool ends = true;    // it meets an object, or no other optic: nothing goes on from it
+    bool to_mirror = false;  // the next optic is one
+    bool has_start = true;   // see has_start(), of its start
+    bool front = true;       // its start was met from the front
+    Vec3 refraction{0};      // see Branch, at its start
+    double turned = 1;       // cosine of the angle between the ray that arrived at its start and the surface
+    double lobe = 0;         // see Branch, summed over the rough surfaces so far
+    Hit hit;                 // where objects are asked for: the first before the next optic, t a distance
+    bool ends = true;        // it meets an object, or no other optic: nothing goes on from it
 };
 
 /// What follow_paths leaves out of each colour, as shares of its light, summed over paths: a path of one
@@ -72,6 +74,19 @@ struct FollowedPaths {
     std::vector<PathSegment> segments;  // parents before children
     CutPaths cut;
 };
+
+/// The leg of a path before another one.
+struct LegBefore {
+    Id medium = kNone;
+    double length = 0;
+    Vec3 end{0};
+    bool has_start = true;
+};
+
+/// Whether what blends on the surface where a leg starts is seen along this leg. A leg in air sees what lies
+/// at both its ends, one in glass at neither, since that is outside. But on a mirror in glass both legs see
+/// it, and from glass into glass, with no air between, the later one does. Legs of no length see nothing.
+bool has_start(const PathWorld& world, const Step& step, Id medium, const LegBefore& before);
 
 /// Where paths begin.
 struct PathStart {

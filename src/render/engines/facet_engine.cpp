@@ -270,8 +270,9 @@ void FacetViewer::view_layers_in_glass(SampleViews& views) const {
             if (is_in_air(world_, views, view)) continue;
             const Material* glass = glass_around(world_, views.around_of(view));
             const double first = up_to_first(view);
-            views.volumes[s].first = trace_layers(
-                world_, view.ray, view.optic != kNone ? up_to_optic(view.ray, first, glass) : first, glass);
+            const bool has_end = view.optic == kNone || world_.optics[view.optic].mirror;
+            views.volumes[s].first =
+                trace_layers(world_, {view.ray, up_to_optic(view.ray, first, has_end), glass, false});
         }
     });
 }

@@ -158,6 +158,7 @@ void HistoryDrawer::draw_volumes(Id index, const FacetSamples& owned, std::span<
     const Material* glass = glass_of(engine_.world, node.medium);
     if (glass && !engine_.world.blended) return;
     std::vector<double> until(grid_.size(), 0.0);
+    std::vector<char> has_start(grid_.size(), 1);
     std::vector<VolumeLight> light(grid_.size());
     const auto for_each_owned = [&](const auto& body) {
         parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
@@ -174,11 +175,13 @@ void HistoryDrawer::draw_volumes(Id index, const FacetSamples& owned, std::span<
         const Id s = owned.sample[i];
         const double seen = hits[s].seen() ? hits[s].t : std::numeric_limits<double>::infinity();
         const double next = up_to_next(index, f, share);
+        const bool has_end = !glass || node.to_mirror[f];
         until[s] = is_end[i]
                        ? seen
-                       : std::min(up_to_optic(interpolated_ray(node.mesh, f, share), next, glass), seen);
+                       : std::min(up_to_optic(interpolated_ray(node.mesh, f, share), next, has_end), seen);
+        has_start[s] = node.has_start[f];
     });
-    (*engine_.volumes)({node.mesh, owned, grid_, until, glass}, light);
+    (*engine_.volumes)({node.mesh, owned, grid_, until, glass, has_start}, light);
     for_each_owned([&](Id f, std::size_t i, const Vec3& share) {
         const Id s = owned.sample[i];
         SampleVolumes& found = (*engine_.found)[s];

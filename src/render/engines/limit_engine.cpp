@@ -104,10 +104,11 @@ void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media
     if (view.hit.seen()) view.depth = view.hit.t;
     if (volumes) {
         const Material* glass = glass_around(world_, around);
-        const double until = first.optic != kNone ? up_to_optic(view.ray, first.at.t, glass)
+        const double until = first.optic != kNone ? up_to_optic(view.ray, first.at.t,
+                                                                !glass || world_.optics[first.optic].mirror)
                              : view.hit.seen()    ? view.hit.t
                                                   : reach;
-        volumes->first = trace_layers(world_, view.ray, until, glass);
+        volumes->first = trace_layers(world_, {view.ray, until, glass, !glass});
     }
     if (first.optic == kNone) return;
     view.optic = first.optic;

@@ -90,15 +90,18 @@ void dim_by_glass(const Material& glass, const Ray& ray, std::span<const Hit> cr
 
 }  // namespace
 
-double up_to_optic(const Ray& ray, double next, const Material* glass) {
-    if (!glass || !std::isfinite(next)) return next;
+double up_to_optic(const Ray& ray, double next, bool has_end) {
+    if (has_end || !std::isfinite(next)) return next;
     return next - 2 * same_place(ray.origin + next * ray.direction) / length(ray.direction);
 }
 
-VolumeLight trace_layers(const World& world, const Ray& ray, double until, const Material* glass) {
+VolumeLight trace_layers(const World& world, const LayerLeg& leg) {
+    const Ray& ray = leg.ray;
+    const Material* glass = leg.glass;
+    const double until = leg.until;
     if (!world.blended) return glass ? VolumeLight() : trace_volumes(world, ray, until);
-    const std::vector<Hit> crossings =
-        glass ? world.blended->crossings_in_glass(ray, until) : world.blended->crossings(ray, until);
+    const std::vector<Hit> crossings = leg.has_start ? world.blended->crossings(ray, until)
+                                                     : world.blended->crossings_after_start(ray, until);
     std::vector<VolumeLight> surfaces = world.blended->shade(ray, crossings);
     if (glass) dim_by_glass(*glass, ray, crossings, surfaces);
     VolumeLight sum;
@@ -119,10 +122,10 @@ VolumeLight trace_layers(const World& world, const Ray& ray, double until, const
 
 VolumeLight trace_layers(const World& world, const PathSegment& segment) {
     const Material* glass = glass_of(world, segment.medium);
-    const double until = !segment.ends        ? up_to_optic(segment.ray, segment.next, glass)
+    const double until = !segment.ends ? up_to_optic(segment.ray, segment.next, !glass || segment.to_mirror)
                          : segment.hit.seen() ? segment.hit.t
                                               : std::numeric_limits<double>::infinity();
-    return trace_layers(world, segment.ray, until, glass);
+    return trace_layers(world, {segment.ray, until, glass, segment.has_start});
 }
 
 DrawVolumes trace_layers(const World& world) {
@@ -136,8 +139,9 @@ DrawVolumes trace_layers(const World& world) {
             parallel_for(samples.size(), kVolumeRaysPerTask, [&](std::size_t from, std::size_t to) {
                 for (const Id s : samples.subspan(from, to - from))
                     if (of.until[s] > 0)
-                        light[s] = trace_layers(world, sample_ray(mesh, f, weights, of.grid.position(s)),
-                                                of.until[s], of.glass);
+                        light[s] = trace_layers(
+                            world, {sample_ray(mesh, f, weights, of.grid.position(s)), of.until[s], of.glass,
+                                    of.has_start.empty() || of.has_start[s]});
             });
         }
     };

@@ -31,15 +31,21 @@ std::vector<CellStretch> trace_cells(const VolumeGeometry& volume, const Ray& ra
 /// The light of all volumes along a ray, its cells by trace_cells.
 VolumeLight trace_volumes(const World& world, const Ray& ray, double until);
 
-/// Where a leg of a path up to an optic at t = next ends for what lies in layers on its way. `glass`: that it
-/// runs in; twice the distance within which two places are one, so that what lies on the body's surface is
-/// outside.
-double up_to_optic(const Ray& ray, double next, const Material* glass);
+/// Where a leg of a path up to an optic at t = next ends for what lies in layers on its way: there, or,
+/// without what lies on the optic, before it by twice the distance within which two places are one.
+double up_to_optic(const Ray& ray, double next, bool has_end);
 
-/// The light of all volumes and blended surfaces along a ray; surfaces by Embree's tree, and, where there are
-/// any, cells, too. In glass volumes are none, and it dims what surfaces add by their distance; what lies on
-/// a body's surface is outside.
-VolumeLight trace_layers(const World& world, const Ray& ray, double until, const Material* glass = nullptr);
+/// A leg of a path, from t = 0 to t = until.
+struct LayerLeg {
+    Ray ray;
+    double until = 0;
+    const Material* glass = nullptr;  // that it runs in; null: air
+    bool has_start = true;            // what lies where it starts is on it
+};
+
+/// The light of all volumes and blended surfaces along a leg; surfaces by Embree's tree, and, where there are
+/// any, cells, too. In glass volumes are none, and it dims what surfaces add by their distance.
+VolumeLight trace_layers(const World& world, const LayerLeg& leg);
 
 /// Of a path's segment, up to what it meets.
 VolumeLight trace_layers(const World& world, const PathSegment& segment);
@@ -49,8 +55,9 @@ struct LayerRays {
     const RayMesh& mesh;
     const FacetSamples& owned;
     const SampleGrid& grid;
-    std::span<const double> until;    // one per sample; not positive: the sample has no such ray
-    const Material* glass = nullptr;  // that they run in; null: air
+    std::span<const double> until;         // one per sample; not positive: the sample has no such ray
+    const Material* glass = nullptr;       // that they run in; null: air
+    std::span<const char> has_start = {};  // one per sample, see LayerLeg; empty: all have
 };
 
 /// The light of all volumes along the interpolated ray of every sample of a facet with rays, written to

@@ -57,7 +57,7 @@ std::vector<Hit> BlendedSurfaces::crossings(const Ray& ray, double until) const 
     return crossings_from(-same_place(ray.origin) / length(ray.direction), ray, until);
 }
 
-std::vector<Hit> BlendedSurfaces::crossings_in_glass(const Ray& ray, double until) const {
+std::vector<Hit> BlendedSurfaces::crossings_after_start(const Ray& ray, double until) const {
     return crossings_from(same_place(ray.origin) / length(ray.direction), ray, until);
 }
 

@@ -28,8 +28,8 @@ class BlendedSurfaces {
     /// where two of one t meet along an edge, one of them. Surfaces of one side count where that is seen.
     std::vector<Hit> crossings(const Ray& ray, double until) const;
 
-    /// The same of a ray that starts on the surface of glass and runs inside: what lies there is outside.
-    std::vector<Hit> crossings_in_glass(const Ray& ray, double until) const;
+    /// The same without those that lie where the ray starts.
+    std::vector<Hit> crossings_after_start(const Ray& ray, double until) const;
 
     /// What comes of light from the segment's end, t = 1, to its start: the surfaces between are what is seen
     /// of them from that end.
