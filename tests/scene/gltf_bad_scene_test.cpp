@@ -112,6 +112,43 @@ TEST_CASE("bad glTF scenes: the file, the place and one message", "[scene][bad-i
           ": /images/0: its buffer view reaches beyond its buffer");
 }
 
+TEST_CASE("glTF buffers that are not there, or not as long as they say: which, and both lengths",
+          "[scene][bad-input]") {
+    const std::string folder = scratch_dir("scene_gltf_buffers");
+    const std::string file = folder + "/room.gltf";
+    const auto error_of = [&](const std::string& buffers) {
+        std::ofstream(file) << R"({"asset":{"version":"2.0"},"nodes":[{}],"buffers":[)" + buffers + "]}";
+        return load_error(file);
+    };
+    std::ofstream(folder + "/ten bytes.bin") << "0123456789";
+    CHECK(
+        error_of(R"({"uri":"ten%20bytes.bin","byteLength":10},{"uri":"ten%20bytes.bin","byteLength":12})") ==
+        ": /buffers/1/byteLength: is 12, but the buffer holds 10 bytes");
+    CHECK(error_of(R"({"uri":"none.bin","byteLength":10})") ==
+          ": /buffers/0/uri: the buffer 'none.bin' cannot be read");
+    const std::string embedded = R"({"uri":"data:application/octet-stream;base64,)";
+    for (const std::string length : {"3", "5", "1000000", "4611686018427387904"})
+        CHECK(error_of(embedded + "AAAAAA==\",\"byteLength\":" + length + "}") ==
+              ": /buffers/0/byteLength: is " + length + ", but the buffer holds 4 bytes");
+    // What it is called does not fill the screen.
+    CHECK(
+        error_of(R"({"uri":"data:none;base64,)" + std::string(4000, 'A') + R"(","byteLength":3000})").size() <
+        300);
+    // A GLB whose second chunk is too short.
+    std::string json = R"({"asset":{"version":"2.0"},"nodes":[{}],"buffers":[{"byteLength":8}]})";
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t number) {
+        const auto value = static_cast<std::uint32_t>(number);
+        std::string bytes(4, 0);
+        std::memcpy(bytes.data(), &value, 4);
+        return bytes;
+    };
+    const std::string binary = folder + "/room.glb";
+    std::ofstream(binary, std::ios::binary) << "glTF" + word(2) + word(32 + json.size()) + word(json.size()) +
+                                                   "JSON" + json + word(4) + std::string("BIN\0abcd", 8);
+    CHECK(load_error(binary) == ": /buffers/0/byteLength: is 8, but the buffer holds 4 bytes");
+}
+
 TEST_CASE("law: a broken glTF scene loads or says why not", "[scene][bad-input][law]") {
     const std::string folder = scratch_dir("scene_gltf_scene_fuzz");
     GltfParts parts;

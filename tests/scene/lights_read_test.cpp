@@ -83,6 +83,13 @@ TEST_CASE("lights without an area, or with fields of others, are refused by name
     CHECK(light_refusal(
               R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, -1, 0], "size": [1, 0]})") ==
           "room.json: /lights/0/size/1: 0 is out of range: must be greater than 0");
+    CHECK(
+        light_refusal(
+            R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, -1, 0], "size": [1e-200, 1e-200]})") ==
+        "room.json: /lights/0/size: has no area");
+    CHECK(light_refusal("{" + disk + R"(, "radius": 1e-200})") == "room.json: /lights/0/radius: has no area");
+    CHECK(light_refusal(R"({"type": "sphere", "position": [0, 3, 0], "radius": 1e-200})") ==
+          "room.json: /lights/0/radius: has no area");
     CHECK(light_refusal(R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, 0, 0]})") ==
           "room.json: /lights/0/direction: a direction must not be zero");
     CHECK(light_refusal(

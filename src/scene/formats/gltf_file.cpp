@@ -11,6 +11,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "base/util/error.h"
@@ -35,11 +36,71 @@ std::string without_tag(const std::string& reason) {
     return reason.rfind("[json.", 0) == 0 && end != std::string::npos ? reason.substr(end + 2) : reason;
 }
 
+/// The library quotes whole data URIs.
+std::string shortened(const std::string& reason) {
+    constexpr std::size_t kMost = 200;
+    return reason.size() <= kMost ? reason : reason.substr(0, kMost) + "...";
+}
+
+/// The text of a glTF, and how long the bytes are that a GLB has beside it.
+struct GltfText {
+    std::string_view json;
+    std::size_t beside = 0;
+};
+
+GltfText text_of(std::string_view bytes) {
+    constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+    if (bytes.rfind("glTF", 0) != 0) return {bytes};
+    const auto length_at = [&](std::size_t at) {
+        std::uint32_t length = 0;
+        if (at + kChunkHeader <= bytes.size()) std::memcpy(&length, bytes.data() + at, sizeof length);
+        return std::size_t{length};
+    };
+    const std::size_t start = std::min(kHeader + kChunkHeader, bytes.size());
+    return {bytes.substr(start, length_at(kHeader)), length_at(start + length_at(kHeader))};
+}
+
+/// How many bytes a buffer has in truth; none: it is in a file that cannot be read.
+std::optional<std::size_t> buffer_size(const Node& buffer, const std::string& uri, std::size_t beside) {
+    if (uri.empty()) return beside;
+    if (uri.rfind("data:", 0) == 0) {
+        const std::size_t start = std::min(uri.find(',') + 1, uri.size()),
+                          end = uri.find_last_not_of('=') + 1;
+        return end > start ? (end - start) * 3 / 4 : 0;
+    }
+    std::error_code failure;
+    const auto folder = std::filesystem::path(buffer.file).parent_path();
+    const std::uintmax_t size = std::filesystem::file_size(folder / decode_gltf_uri(uri), failure);
+    return failure ? std::nullopt : std::optional(static_cast<std::size_t>(size));
+}
+
+/// Throws InputError where one is not there or has another length than it says, of which the library says
+/// less, or all that a data URI holds.
+void check_buffers(const std::string& file, std::string_view bytes) {
+    const GltfText text = text_of(bytes);
+    const Json json = Json::parse(text.json, nullptr, false);
+    if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return;
+    const Node buffers = Node{json, "", file}["buffers"];
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        const Node buffer = buffers[i];
+        if (!buffer.json.is_object() || !buffer.has("byteLength")) continue;
+        const Json& says = buffer.json["byteLength"];
+        if (!says.is_number_unsigned() || (buffer.has("uri") && !buffer.json["uri"].is_string())) continue;
+        const std::string uri = buffer.has("uri") ? buffer.json["uri"].get<std::string>() : std::string();
+        const std::optional<std::size_t> has = buffer_size(buffer, uri, text.beside);
+        if (!has) buffer["uri"].fail("the buffer '" + uri + "' cannot be read");
+        if (uri.empty() ? says > *has : says != *has)
+            buffer["byteLength"].fail("is " + says.dump() + ", but the buffer holds " + std::to_string(*has) +
+                                      " bytes");
+    }
+}
+
 [[noreturn]] void fail(const std::string& file, std::string_view bytes, const std::string& reason) {
+    check_buffers(file, bytes);
     // Compressed accessors have no buffer view, which is all that the library says of them.
     const bool draco = bytes.find("\"KHR_draco_mesh_compression\"") != std::string::npos;
     throw InputError(file, "",
-                     "not a readable glTF file: " + one_line(without_tag(reason)) +
+                     "not a readable glTF file: " + shortened(one_line(without_tag(reason))) +
                          (draco ? " (it uses KHR_draco_mesh_compression, which is not supported)" : ""));
 }
 

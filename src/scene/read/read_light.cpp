@@ -40,9 +40,10 @@ const std::vector<Field<Light>>& light_fields() {
                 "by their exact surface, at any resolution. Glass casts none: it lets the light through, "
                 "unbent and undimmed. ambient: it reaches a surface from where nothing stands (ambient "
                 "occlusion)."),
-        setting("caustics", &Light::caustics, yes_or_no(),
-                "Whether its light is followed over mirrors and through glass to where it falls, as far as "
-                "maxDepth; objects, mirrors and glass then stop what comes straight, whatever 'shadows' says.")
+        setting(
+            "caustics", &Light::caustics, yes_or_no(),
+            "Whether its light is followed over mirrors and through glass to where it falls, as far as "
+            "maxDepth; objects, mirrors and glass then stop what comes straight, whatever 'shadows' says.")
             .of({"directional", "point", "spot", "rectangle", "disk", "sphere", "environment"}),
         setting("baked", &Light::baked, yes_or_no(),
                 "Whether its light is in the meshes' bakedLight: it shows as it does, but shines no more.")};
@@ -68,6 +69,12 @@ Light read_light(const Node& node) {
         if (!(spot->inner_cone_angle < spot->outer_cone_angle))
             (node.has("outerConeAngle") ? node["outerConeAngle"] : node["innerConeAngle"])
                 .fail("the inner cone must be within the outer one");
+    if (const auto* rectangle = std::get_if<RectangleLight>(&light.kind))
+        if (!(rectangle->size.x * rectangle->size.y > 0)) node["size"].fail("has no area");
+    if (const auto* disk = std::get_if<DiskLight>(&light.kind))
+        if (!(disk->radius * disk->radius > 0)) node["radius"].fail("has no area");
+    if (const auto* sphere = std::get_if<SphereLight>(&light.kind))
+        if (!(sphere->radius * sphere->radius > 0)) node["radius"].fail("has no area");
     return light;
 }
 
