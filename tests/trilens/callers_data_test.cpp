@@ -377,6 +377,7 @@ TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]")
             only_errors("check_prescription", [&] { check_prescription(lens); });
             only_errors("is_round", [&] { is_round(lens); });
             only_errors("section_of", [&] { section_of(lens, LensSection::kX); });
+            only_errors("imaging_section", [&] { imaging_section(lens); });
             only_errors("lens_obscurations", [&] { lens_obscurations(lens); });
             only_errors("index_at", [&] { index_at(row.glass, SpectralLine::kF); });
             only_errors("lens_elements", [&] { lens_elements(lens); });
