@@ -102,6 +102,8 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& rece
         light += here->weights[k] * piece.fallen.share[c] * piece.fallen.light[c];
         weights += here->weights[k] * piece.fallen.weights[c];
     }
+    const double density = here->density / piece.plane.unit_area;
+    if (is_plain(piece, receiver)) return density * light;
     Vec3 origin(0), direction(0);
     for (int k = 0; k < 3; ++k) {
         const BeamEnd& end = *piece.corners.end[static_cast<std::size_t>(k)];
@@ -116,7 +118,13 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& rece
         if (is_hidden(piece, there, origin)) return std::nullopt;
     }
     light *= left_of(beams_.histories[piece.beam.history], origin, receiver);
-    return here->density / piece.plane.unit_area * std::min(cosine / geometric, kMostTurned) * light;
+    return density * std::min(cosine / geometric, kMostTurned) * light;
+}
+
+/// Whether all of its light comes, and counts as it falls on the plane, wherever it comes from.
+bool BeamLight::is_plain(const Piece& piece, const Receiver& receiver) const {
+    return piece.way == Way::kFree && !space_.veil && receiver.shading_normal == piece.plane.normal &&
+           beams_.histories[piece.beam.history].medium == kNone;
 }
 
 /// Calls use(light) for what arrives by each beam, or each of its exact pieces.

@@ -67,6 +67,7 @@ class BeamLight {
     template <typename Use>
     void for_each_arrival(const Receiver& receiver, const Use& use) const;
     std::optional<Vec3> light_of(const Piece& piece, const Receiver& receiver) const;
+    bool is_plain(const Piece& piece, const Receiver& receiver) const;
     Vec3 left_of(const LightHistory& history, const Vec3& origin, const Receiver& receiver) const;
     bool comes(const ExactArrival& arrival, const Receiver& receiver) const;
     const PlaneBeams* plane_beams(const Receiver& receiver) const;

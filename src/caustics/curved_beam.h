@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -59,6 +60,31 @@ bool is_beyond(const std::array<Vec2, kCount>& at, double half, double room) {
     return false;
 }
 
+/// The Bezier points of a quadratic triangle, whose hull holds it: the corners, then those across from them.
+inline std::array<Vec2, 6> bezier_points(const std::array<Vec2, 6>& at) {
+    std::array<Vec2, 6> points = at;
+    for (std::size_t k = 0; k < 3; ++k)
+        points[3 + k] = 2.0 * at[3 + k] - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]);
+    return points;
+}
+
+/// Whether a line along one of the first three corners' sides parts the hull from the square [-half, half]^2
+/// (separating axes), up to rounding.
+template <std::size_t kCount>
+bool is_apart(const std::array<Vec2, kCount>& hull, double half) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 side = hull[(k + 1) % 3] - hull[k];
+        const double reach = half * (std::fabs(side.x) + std::fabs(side.y));
+        double low = cross_on_plane(side, hull[0]), high = low;
+        for (std::size_t i = 1; i < kCount; ++i) {
+            const double at = cross_on_plane(side, hull[i]);
+            low = at < low ? at : low, high = at > high ? at : high;
+        }
+        if (low > reach || high < -reach) return true;
+    }
+    return false;
+}
+
 /// Which of the square's sides the point lies beyond, a bit each (Cohen and Sutherland's outcode).
 inline unsigned sides_beyond(const Vec2& at, double half) {
     return static_cast<unsigned>(at.x > half) | static_cast<unsigned>(at.x < -half) << 1 |
@@ -82,6 +108,7 @@ template <typename Use>
 void CurvedBeam::for_each_piece(const FallenCurve& curve, double half, int sides, const Use& use) const {
     const std::array<Vec2, 6>& at = curve.at;
     if (is_beyond(at, half, bulge_on_plane(at))) return;
+    if (half > 0 && is_apart(bezier_points(at), half)) return;
     const PieceGrid& grid = PieceGrid::of(sides);
     std::array<Vec2, PieceGrid::kMostCorners> corner;
     std::array<unsigned, PieceGrid::kMostCorners> beyond;
@@ -94,9 +121,10 @@ void CurvedBeam::for_each_piece(const FallenCurve& curve, double half, int sides
         const std::array<std::size_t, 3>& ends = grid.piece[p];
         if ((beyond[ends[0]] & beyond[ends[1]] & beyond[ends[2]]) != 0) continue;
         FallenBeam fallen;
+        fallen.at = {corner[ends[0]], corner[ends[1]], corner[ends[2]]};
+        if (half > 0 && is_apart(fallen.at, half)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t n = ends[k];
-            fallen.at[k] = corner[n];
             const Vec3& w = fallen.weights[k] = grid.weights[n];
             fallen.light[k] = Vec3(0);
             for (std::size_t c = 0; c < 6; ++c) fallen.light[k] += grid.quadratic[n][c] * curve.light[c];

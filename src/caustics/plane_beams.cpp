@@ -203,10 +203,7 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
 
 PlaneBeams::Box2 PlaneBeams::hull_box(const std::array<Vec2, 6>& at) {
     Box2 box;
-    for (std::size_t k = 0; k < 3; ++k) {
-        box.include(at[k]);
-        box.include(2.0 * at[3 + k] - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]));
-    }
+    for (const Vec2& point : bezier_points(at)) box.include(point);
     return box;
 }
 
