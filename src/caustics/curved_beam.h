@@ -107,8 +107,12 @@ struct PieceGrid {
 template <typename Use>
 void CurvedBeam::for_each_piece(const FallenCurve& curve, double half, int sides, const Use& use) const {
     const std::array<Vec2, 6>& at = curve.at;
-    if (is_beyond(at, half, bulge_on_plane(at))) return;
-    if (half > 0 && is_apart(bezier_points(at), half)) return;
+    if (half > 0) {
+        const std::array<Vec2, 6> hull = bezier_points(at);
+        if (is_beyond(hull, half, 0) || is_apart(hull, half)) return;
+    } else if (is_beyond(at, half, bulge_on_plane(at))) {
+        return;
+    }
     const PieceGrid& grid = PieceGrid::of(sides);
     std::array<Vec2, PieceGrid::kMostCorners> corner;
     std::array<unsigned, PieceGrid::kMostCorners> beyond;
