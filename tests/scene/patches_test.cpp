@@ -7,6 +7,7 @@
 
 #include "scene/data/patches.h"
 #include "scene/info.h"
+#include "scene/patch_scene_text.h"
 #include "scene/scene_text.h"
 #include "support/bezier_patch.h"
 #include "support/draw.h"
@@ -29,13 +30,6 @@ Vec3 on_patch(const BezierPatch& p, const Vec2& uv) {
     for (std::size_t j = 0; j < 4; ++j)
         column[j] = on_curve({p[4 * j], p[4 * j + 1], p[4 * j + 2], p[4 * j + 3]}, uv.x);
     return on_curve(column, uv.y);
-}
-
-SurfacePoint on_first(const RationalPatch& patch, const Vec2& uv) {
-    return evaluate(patch, uv, extent_of(patch));
-}
-SurfacePoint on_first(const BezierPatch& patch, const Vec2& uv) {
-    return on_first(beziers_of(spline_of(patch)).at(0), uv);
 }
 
 /// The B-spline of a degree at t, by the recursion of Cox and de Boor; the last knots close their interval.
@@ -74,25 +68,6 @@ std::vector<std::array<double, 2>> steps_of(const std::vector<double>& knots, in
 
 constexpr std::array<Vec2, 5> kPlaces{Vec2(0, 0), Vec2(1, 0.25), Vec2(0.3, 0.7), Vec2(0.5, 0.5),
                                       Vec2(0.9, 1)};
-
-std::string numbers(const std::vector<Vec3>& points) {
-    std::string text;
-    for (const Vec3& p : points)
-        text += (text.empty() ? "[" : ", [") + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
-                std::to_string(p.z) + "]";
-    return "[" + text + "]";
-}
-
-std::string patch_scene(const std::string& patches, const std::string& mesh = R"("role": "object")") {
-    return R"({"version": 1, "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 1, 4], "at": [0, 0, 0]}}],
-        "materials": [{"name": "glass", "transmissionFactor": 1}],
-        "meshes": [{"name": "sheet", )" +
-           mesh + ", \"patches\": [" + patches + "]}]}";
-}
-
-std::string bezier_text(const BezierPatch& patch) {
-    return R"({"type": "bezier", "points": )" + numbers({patch.begin(), patch.end()}) + "}";
-}
 
 }  // namespace
 
@@ -231,70 +206,6 @@ TEST_CASE("objects of patches are polygons with the patch's normals", "[scene][p
             CHECK(length(normal) == Approx(1));
             CHECK(dot(normal, front) > 0);
         }
-    }
-}
-
-TEST_CASE("edges without a neighbour are counted, points are no edges", "[scene][patches]") {
-    const BezierPatch patch = random_patch(8, 0.4, 1);
-    const auto count = [](const std::vector<BezierPatch>& patches) {
-        std::vector<RationalPatch> all;
-        for (const BezierPatch& one : patches) all.push_back(beziers_of(spline_of(one)).at(0));
-        return find_open_edges(all).open;
-    };
-    CHECK(count({patch}) == 4);
-    BezierPatch beside = random_patch(9, 0.4, 1);
-    for (std::size_t j = 0; j < 4; ++j) beside[4 * j] = patch[4 * (3 - j) + 3];  // against it
-    CHECK(count({patch, beside}) == 6);
-    beside[0] += Vec3(1e-3, 0, 0);
-    CHECK(count({patch, beside}) == 8);
-    BezierPatch cap = patch;
-    for (std::size_t k = 1; k < 4; ++k) cap[k] = cap[0];
-    CHECK(count({cap}) == 3);
-    CHECK(find_open_edges(beziers_of(nurbs_sphere(2))).open == 0);
-    CHECK(find_open_edges(beziers_of(nurbs_torus(3, 1))).open == 0);
-
-    const Scene scene = load_text(patch_scene(bezier_text(patch), R"("role": "optic", "material": "glass")"));
-    bool warned = false;
-    for (const std::string& warning : scene.warnings)
-        warned = warned || contains(warning, "4 edges of patches have no other along them");
-    CHECK(warned);
-    CHECK(make_scene_info(scene).meshes[0].faces == 1);
-    Box hull;
-    for (const Vec3& point : patch) hull.include(point);
-    const Box bounds = make_scene_info(scene).meshes[0].bounds;
-    CHECK(length(bounds.low - hull.low) < 1e-5);  // the scene's text has six digits
-    CHECK(length(bounds.high - hull.high) < 1e-5);
-}
-
-TEST_CASE("gaps between edges of patches are counted, whatever the way that the edges run",
-          "[scene][patches]") {
-    const BezierPatch patch = random_patch(8, 0.4, 1);
-    BezierPatch along = random_patch(9, 0.4, 1), against = along;
-    for (std::size_t j = 0; j < 4; ++j) {
-        along[4 * j] = patch[4 * j + 3];
-        against[4 * j] = patch[4 * (3 - j) + 3];
-    }
-    const auto near = [&](BezierPatch beside, double gap) {
-        for (std::size_t j = 0; j < 4; ++j) beside[4 * j] += Vec3(0, 0, gap);
-        const OpenEdges edges =
-            find_open_edges({beziers_of(spline_of(patch)).at(0), beziers_of(spline_of(beside)).at(0)});
-        CHECK(edges.open == (gap == 0 ? 6 : 8));
-        return edges.near;
-    };
-    for (const BezierPatch& beside : {along, against}) {
-        CHECK(near(beside, 0) == 0);
-        CHECK(near(beside, 1e-7) == 2);
-        CHECK(near(beside, 1e-3) == 2);
-        CHECK(near(beside, 0.1) == 0);
-    }
-    BezierPatch beside = along;
-    beside[0] += Vec3(1e-3, 0, 0);
-    for (const std::string role : {R"("role": "optic", "material": "glass")", R"("role": "object")"}) {
-        CAPTURE(role);
-        const Scene scene = load_text(patch_scene(bezier_text(patch) + ", " + bezier_text(beside), role));
-        CHECK(std::count(scene.warnings.begin(), scene.warnings.end(),
-                         "room.json: /meshes/0: 2 edges of patches lie within a hundredth of their length of "
-                         "another's and do not agree with it: there are gaps") == 1);
     }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/math/point_tree.h"
+
 namespace trilens {
 
 Vec3 normal_of_tangents(const SurfacePoint& point, double extent) {
@@ -211,17 +213,21 @@ class Joining {
     }
 
     void find_edges(std::vector<FaceBorder>& borders) {
-        // By the middle of their ends, so that only sides near each other are compared.
-        std::vector<std::size_t> order(sides_.size());
-        std::iota(order.begin(), order.end(), 0);
-        const auto key = [&](std::size_t s) { return sides_[s].first.x + sides_[s].last.x; };
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+        // Only sides whose ends have the same middle are compared; twice the tolerance covers its rounding.
+        std::vector<std::size_t> lines;
+        std::vector<Vec3> middles;
+        for (std::size_t s = 0; s < sides_.size(); ++s)
+            if (!sides_[s].is_point) {
+                lines.push_back(s);
+                middles.push_back(0.5 * (sides_[s].first + sides_[s].last));
+            }
+        const PointTree tree(middles);
         Classes edges(sides_.size());
-        for (std::size_t i = 0; i < order.size(); ++i)
-            for (std::size_t j = i + 1; j < order.size() && key(order[j]) - key(order[i]) <= 2 * tolerance_;
-                 ++j)
-                join_sides(std::min(order[i], order[j]), std::max(order[i], order[j]), edges);
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            tree.any_within(middles[i], 2 * tolerance_, [&](std::size_t j) {
+                if (j > i) join_sides(lines[i], lines[j], edges);
+                return false;
+            });
         for (std::size_t s = 0; s < sides_.size(); ++s) {
             const std::size_t first = edges.of(s);
             if (first == s) continue;
@@ -233,7 +239,6 @@ class Joining {
     }
 
     void join_sides(std::size_t a, std::size_t b, Classes& edges) {
-        if (sides_[a].is_point || sides_[b].is_point) return;
         for (const bool against : {true, false}) {
             if (!agree(sides_[a], sides_[b], against)) continue;
             edges.join(a, b);

@@ -1,10 +1,9 @@
 #include "scene/data/patches.h"
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <utility>
 
+#include "base/math/point_tree.h"
 #include "base/util/check.h"
 
 namespace trilens {
@@ -205,16 +204,21 @@ PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n) {
 
 namespace {
 
-/// A side that no other runs along, by places on it.
+/// A side that is joined to no other, by places on it.
 struct OpenSide {
     std::size_t patch = 0;
-    Vec3 first{0}, middle{0}, last{0};
+    std::array<Vec3, 5> places{};  // at quarters
 
-    double length_of() const { return length(middle - first) + length(last - middle); }
-    bool lies_at(const OpenSide& other, double tolerance) const {
-        const auto near = [&](const Vec3& a, const Vec3& b) { return length(a - b) <= tolerance; };
-        return near(middle, other.middle) && ((near(first, other.first) && near(last, other.last)) ||
-                                              (near(first, other.last) && near(last, other.first)));
+    const Vec3& middle() const { return places[2]; }
+    double length_of() const { return length(middle() - places[0]) + length(places[4] - middle()); }
+    /// By every place, or every second one, in either direction.
+    bool lies_at(const OpenSide& other, double tolerance, std::size_t every) const {
+        const auto agrees = [&](bool against) {
+            for (std::size_t k = 0; k < 5; k += every)
+                if (!(length(places[k] - other.places[against ? 4 - k : k]) <= tolerance)) return false;
+            return true;
+        };
+        return agrees(false) || agrees(true);
     }
 };
 
@@ -225,7 +229,7 @@ OpenSide side_of(const std::vector<RationalPatch>& patches, std::size_t p, std::
     const auto at = [&](double t) {
         return evaluate_first_order(patches[p], from + t * (to - from), extent).position;
     };
-    return {p, at(0), at(0.5), at(1)};
+    return {p, {at(0), at(0.25), at(0.5), at(0.75), at(1)}};
 }
 
 std::vector<OpenSide> open_sides(std::vector<RationalPatch> patches) {
@@ -241,22 +245,26 @@ std::vector<OpenSide> open_sides(std::vector<RationalPatch> patches) {
 }  // namespace
 
 OpenEdges find_open_edges(const std::vector<RationalPatch>& patches) {
-    std::vector<OpenSide> open = open_sides(patches);
-    std::sort(open.begin(), open.end(),
-              [](const OpenSide& a, const OpenSide& b) { return a.middle.x < b.middle.x; });
-    std::vector<bool> is_near(open.size());
-    for (std::size_t i = 0; i < open.size(); ++i) {
-        const double tolerance = kNearEdge * open[i].length_of();
-        const auto is_beside = [&](std::size_t j) {
-            return std::fabs(open[j].middle.x - open[i].middle.x) <= tolerance;
+    const std::vector<OpenSide> open = open_sides(patches);
+    std::vector<Vec3> middles;
+    for (const OpenSide& side : open) middles.push_back(side.middle());
+    const PointTree tree(std::move(middles));
+    Box box;
+    for (const RationalPatch& patch : patches) box.include(bounds_of(patch));
+    const double same = joint_tolerance(box);
+    OpenEdges edges{open.size()};
+    for (const OpenSide& side : open) {
+        const auto has_another = [&](double tolerance, std::size_t every) {
+            return tree.any_within(side.middle(), tolerance, [&](std::size_t other) {
+                return open[other].patch != side.patch && side.lies_at(open[other], tolerance, every);
+            });
         };
-        const auto look_at = [&](std::size_t j) {
-            if (open[j].patch != open[i].patch && open[i].lies_at(open[j], tolerance)) is_near[i] = true;
-        };
-        for (std::size_t j = i + 1; j < open.size() && is_beside(j) && !is_near[i]; ++j) look_at(j);
-        for (std::size_t j = i; j-- > 0 && is_beside(j) && !is_near[i];) look_at(j);
+        if (has_another(same, 1))
+            ++edges.coincident;
+        else if (has_another(kNearEdge * side.length_of(), 2))
+            ++edges.near;
     }
-    return {open.size(), static_cast<std::size_t>(std::count(is_near.begin(), is_near.end(), true))};
+    return edges;
 }
 
 }  // namespace trilens

@@ -64,10 +64,11 @@ PolygonMesh patch_polygons(const std::vector<RationalPatch>& patches, int n);
 /// How near edges lie whose ends and middles are this share of their length apart.
 inline constexpr double kNearEdge = 0.01;
 
-/// Edges that no other edge runs along, as join_patches finds them; those that are one point do not count.
+/// Edges that are joined to no other, as join_patches finds them; those that are one point do not count.
 struct OpenEdges {
     std::size_t open = 0;
-    std::size_t near = 0;  // of them: those that lie near one of another patch, with a gap between
+    std::size_t coincident = 0;  // of them: one of another patch is where it is, with other control points
+    std::size_t near = 0;        // of the rest: those that lie near one of another patch, apart from it
 };
 
 OpenEdges find_open_edges(const std::vector<RationalPatch>& patches);

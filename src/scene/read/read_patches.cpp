@@ -152,14 +152,11 @@ std::vector<RationalPatch> read_patches(const Node& mesh) {
     return patches;
 }
 
-/// How many edges are open at all.
-std::size_t warn_of_gaps(const Node& node, const std::vector<RationalPatch>& patches, Reading& reading) {
-    const OpenEdges edges = find_open_edges(patches);
+void warn_of_gaps(const Node& node, const OpenEdges& edges, Reading& reading) {
     if (edges.near > 0)
         reading.warn(node.place, std::to_string(edges.near) +
                                      " edges of patches lie within a hundredth of their length of another's "
-                                     "and do not agree with it: there are gaps");
-    return edges.open;
+                                     "and are apart from it: there may be gaps");
 }
 
 }  // namespace
@@ -168,17 +165,22 @@ void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& re
     mesh.patches = read_patches(node);
     mesh.of_patches = true;
     mesh.face_count = mesh.patches.size();
-    const std::size_t open = warn_of_gaps(node, mesh.patches, reading);
-    if (is_glass && open > 0)
+    const OpenEdges edges = find_open_edges(mesh.patches);
+    warn_of_gaps(node, edges, reading);
+    if (edges.coincident > 0)
+        reading.warn(node.place, std::to_string(edges.coincident) +
+                                     " edges of patches lie along another's and are not joined to it: their "
+                                     "degrees, weights or control points are not the same");
+    if (const std::size_t bare = edges.open - edges.coincident; is_glass && bare > 0)
         reading.warn(node.place,
-                     std::to_string(open) +
+                     std::to_string(bare) +
                          " edges of patches have no other along them: this glass is one interface, "
                          "or a body with holes");
 }
 
 PolygonMesh read_object_patches(const Node& node, Mesh& mesh, Reading& reading) {
     const std::vector<RationalPatch> patches = read_patches(node);
-    warn_of_gaps(node, patches, reading);
+    warn_of_gaps(node, find_open_edges(patches), reading);
     mesh.of_patches = true;
     mesh.face_count = patches.size();
     return patch_polygons(patches, mesh.resolution);
