@@ -127,9 +127,13 @@ TEST_CASE("glTF buffers that are not there, or not as long as they say: which, a
     CHECK(error_of(R"({"uri":"none.bin","byteLength":10})") ==
           ": /buffers/0/uri: the buffer 'none.bin' cannot be read");
     const std::string embedded = R"({"uri":"data:application/octet-stream;base64,)";
-    for (const std::string length : {"3", "5", "1000000", "4611686018427387904"})
+    for (const std::string length : {"0", "5", "1000000", "4611686018427387904"})
         CHECK(error_of(embedded + "AAAAAA==\",\"byteLength\":" + length + "}") ==
               ": /buffers/0/byteLength: is " + length + ", but the buffer holds 4 bytes");
+    for (const std::string uri :
+         {"data:", "data:,AAAA", "data:application/octet-stream,AAAA", "data:;base64"})
+        CHECK(error_of(R"({"byteLength":3,"uri":")" + uri + "\"}") ==
+              ": /buffers/0/uri: a data URI without ';base64,' is not read");
     // What it is called does not fill the screen.
     CHECK(
         error_of(R"({"uri":"data:none;base64,)" + std::string(4000, 'A') + R"(","byteLength":3000})").size() <
@@ -147,6 +151,42 @@ TEST_CASE("glTF buffers that are not there, or not as long as they say: which, a
     std::ofstream(binary, std::ios::binary) << "glTF" + word(2) + word(32 + json.size()) + word(json.size()) +
                                                    "JSON" + json + word(4) + std::string("BIN\0abcd", 8);
     CHECK(load_error(binary) == ": /buffers/0/byteLength: is 8, but the buffer holds 4 bytes");
+}
+
+TEST_CASE("glTF buffers longer than they say are read as far as they say", "[scene][gltf]") {
+    const std::string folder = scratch_dir("scene_gltf_long_buffers");
+    const std::string file = write_gltf(folder, GltfParts());
+    const Scene exact = load(file);
+    std::ifstream in(file);
+    const std::string json{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    std::ofstream(folder + "/room.bin", std::ios::binary | std::ios::app) << std::string(5, 'x');
+    // In a file, and beside one in a GLB's own second chunk, which nothing names.
+    std::string padded = json;
+    padded.resize((padded.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t number) {
+        const auto value = static_cast<std::uint32_t>(number);
+        return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const std::string binary = folder + "/room.glb";
+    std::ofstream(binary, std::ios::binary) << "glTF" + word(2) + word(32 + padded.size()) +
+                                                   word(padded.size()) + "JSON" + padded + word(4) +
+                                                   std::string("BIN\0abcd", 8);
+    for (const std::string& longer : {file, binary}) {
+        const Scene scene = load(longer);
+        REQUIRE(scene.meshes.size() == 1);
+        CHECK(scene.meshes[0].object.points == exact.meshes[0].object.points);
+        CHECK(scene.meshes[0].object.triangles == exact.meshes[0].object.triangles);
+    }
+    // What lies beyond is no part of the buffer.
+    GltfBuffer buffer = make_buffer();
+    buffer.views +=
+        R"(,{"buffer":0,"byteOffset":)" + std::to_string(buffer.bytes.size() - 4) + R"(,"byteLength":8})";
+    buffer.accessors += R"(,{"bufferView":11,"componentType":5126,"count":2,"type":"SCALAR"})";
+    GltfParts parts;
+    parts.primitive = R"({"attributes":{"POSITION":0},"indices":11})";
+    const std::string beyond = write_gltf(folder, parts, buffer);
+    std::ofstream(folder + "/room.bin", std::ios::binary | std::ios::app) << std::string(8, 'x');
+    CHECK(contains(load_error(beyond), "its buffer view reaches beyond its buffer"));
 }
 
 TEST_CASE("law: a broken glTF scene loads or says why not", "[scene][bad-input][law]") {

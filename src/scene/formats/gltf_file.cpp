@@ -13,6 +13,8 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/util/error.h"
 #include "json/json.h"
@@ -64,8 +66,10 @@ GltfText text_of(std::string_view bytes) {
 std::optional<std::size_t> buffer_size(const Node& buffer, const std::string& uri, std::size_t beside) {
     if (uri.empty()) return beside;
     if (uri.rfind("data:", 0) == 0) {
-        const std::size_t start = std::min(uri.find(',') + 1, uri.size()),
-                          end = uri.find_last_not_of('=') + 1;
+        const std::size_t comma = uri.find(',');
+        if (comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64"))
+            buffer["uri"].fail("a data URI without ';base64,' is not read");
+        const std::size_t start = comma + 1, end = uri.find_last_not_of('=') + 1;
         return end > start ? (end - start) * 3 / 4 : 0;
     }
     std::error_code failure;
@@ -74,12 +78,19 @@ std::optional<std::size_t> buffer_size(const Node& buffer, const std::string& ur
     return failure ? std::nullopt : std::optional(static_cast<std::size_t>(size));
 }
 
-/// Throws InputError where one is not there or has another length than it says, of which the library says
-/// less, or all that a data URI holds.
-void check_buffers(const std::string& file, std::string_view bytes) {
+/// Buffers that hold more than is read of them, which the library refuses.
+struct LongBuffers {
+    Json json;                                             // that says how long they are in truth
+    std::vector<std::pair<std::size_t, std::size_t>> cut;  // which, and how long they should be
+};
+
+/// Throws InputError where one is not there or is shorter than it says, of which the library says less, or
+/// all that a data URI holds.
+LongBuffers check_buffers(const std::string& file, std::string_view bytes) {
     const GltfText text = text_of(bytes);
     const Json json = Json::parse(text.json, nullptr, false);
-    if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return;
+    if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return {};
+    LongBuffers longer{json, {}};
     const Node buffers = Node{json, "", file}["buffers"];
     for (std::size_t i = 0; i < buffers.size(); ++i) {
         const Node buffer = buffers[i];
@@ -89,14 +100,32 @@ void check_buffers(const std::string& file, std::string_view bytes) {
         const std::string uri = buffer.has("uri") ? buffer.json["uri"].get<std::string>() : std::string();
         const std::optional<std::size_t> has = buffer_size(buffer, uri, text.beside);
         if (!has) buffer["uri"].fail("the buffer '" + uri + "' cannot be read");
-        if (uri.empty() ? says > *has : says != *has)
+        if (says > *has || says == 0)
             buffer["byteLength"].fail("is " + says.dump() + ", but the buffer holds " + std::to_string(*has) +
                                       " bytes");
+        if (uri.empty() || says == *has) continue;
+        longer.json["buffers"][i]["byteLength"] = *has;
+        longer.cut.emplace_back(i, says.get<std::size_t>());
     }
+    return longer;
+}
+
+/// The same file with another JSON in it.
+std::string with_json(std::string_view bytes, const Json& json) {
+    std::string text = json.dump();
+    if (bytes.rfind("glTF", 0) != 0) return text;
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t number) {
+        const auto value = static_cast<std::uint32_t>(number);
+        return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const std::string_view old = text_of(bytes).json;
+    const std::string_view rest = bytes.substr(static_cast<std::size_t>(old.end() - bytes.begin()));
+    const std::string chunk = word(text.size()) + "JSON" + text + std::string(rest);
+    return std::string(bytes.substr(0, 8)) + word(12 + chunk.size()) + chunk;
 }
 
 [[noreturn]] void fail(const std::string& file, std::string_view bytes, const std::string& reason) {
-    check_buffers(file, bytes);
     // Compressed accessors have no buffer view, which is all that the library says of them.
     const bool draco = bytes.find("\"KHR_draco_mesh_compression\"") != std::string::npos;
     throw InputError(file, "",
@@ -104,11 +133,9 @@ void check_buffers(const std::string& file, std::string_view bytes) {
                          (draco ? " (it uses KHR_draco_mesh_compression, which is not supported)" : ""));
 }
 
-}  // namespace
-
-tinygltf::Model load_gltf_model(const std::string& file) {
-    const std::string whole = read_required_file(file);
-    const std::string_view bytes = utf8_text(whole, file);
+/// None: the library says why.
+std::optional<tinygltf::Model> read_model(const std::string& file, std::string_view bytes,
+                                          std::string& reason) {
     if (bytes.size() > std::numeric_limits<unsigned int>::max())
         throw InputError(file, "", "is larger than 4 GiB");
     const auto size = static_cast<unsigned int>(bytes.size());
@@ -118,20 +145,36 @@ tinygltf::Model load_gltf_model(const std::string& file) {
     tinygltf::TinyGLTF reader;
     reader.SetImageLoader(keep_encoded, nullptr);
     tinygltf::Model model;
-    std::string errors, warnings;
-    bool done = false;
+    std::string warnings;
+    reason.clear();
     try {
         const auto* start = reinterpret_cast<const unsigned char*>(bytes.data());
-        done = is_binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings, start, size, folder)
-                         : reader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), size, folder);
+        if (is_binary ? reader.LoadBinaryFromMemory(&model, &reason, &warnings, start, size, folder)
+                      : reader.LoadASCIIFromString(&model, &reason, &warnings, bytes.data(), size, folder))
+            return model;
     } catch (const std::exception& error) {
-        fail(file, bytes, error.what());
+        reason = error.what();
     }
-    if (!done) fail(file, bytes, errors);
-    if (model.asset.version.rfind("2.", 0) != 0)
+    return std::nullopt;
+}
+
+}  // namespace
+
+tinygltf::Model load_gltf_model(const std::string& file) {
+    const std::string whole = read_required_file(file);
+    const std::string_view bytes = utf8_text(whole, file);
+    std::string reason;
+    std::optional<tinygltf::Model> model = read_model(file, bytes, reason);
+    if (!model) {
+        const LongBuffers longer = check_buffers(file, bytes);
+        if (!longer.cut.empty()) model = read_model(file, with_json(bytes, longer.json), reason);
+        if (!model) fail(file, bytes, reason);
+        for (const auto& [buffer, size] : longer.cut) model->buffers[buffer].data.resize(size);
+    }
+    if (model->asset.version.rfind("2.", 0) != 0)
         throw InputError(file, "/asset/version",
-                         "glTF '" + one_line(model.asset.version) + "' is not supported, 2.0 is");
-    return model;
+                         "glTF '" + one_line(model->asset.version) + "' is not supported, 2.0 is");
+    return std::move(*model);
 }
 
 std::string decode_gltf_uri(const std::string& uri) {
