@@ -107,3 +107,30 @@ TEST_CASE("points may come from standard input, where the scene does not", "[cli
     CHECK(has(both.err, "both"));
     CHECK(run_trilens("project " + quoted_word(scene) + " --points - </dev/null").exit_code == 3);
 }
+
+TEST_CASE("that there are no objects is told where rays can see nothing but the background",
+          "[cli][messages]") {
+    const std::string folder = scratch_dir("cli_messages_objects");
+    const auto told_of = [&](const std::string& more) {
+        const std::string scene = write_file(folder, "room.json",
+                                             R"({"version": 1, "film": {"width": 16, "height": 12},
+            "cameras": [{"yfov": 45, "lookAt": {"eye": [0, 0, 5], "at": [0, 0, 0]}}],
+            "materials": [{"name": "chrome", "metallicFactor": 1, "roughnessFactor": 0}],
+            "meshes": [{"name": "ball", "role": "optic", "material": "chrome", "resolution": 4,
+                        "primitive": {"type": "sphere", "center": [1, 0, 0], "radius": 0.5}})" +
+                                                 more + "}");
+        const CommandRun run =
+            run_trilens("render " + quoted_word(scene) + " -o " + quoted_word(folder + "/x.exr"));
+        INFO(run.err);
+        CHECK(run.exit_code == 0);
+        return has(run.err, "the scene has no objects: rays see only the background");
+    };
+    CHECK(told_of("]"));
+    CHECK_FALSE(told_of(R"(, {"name": "wall", "role": "object", "points": [[-9,-9,-2],[9,-9,-2],[0,9,-2]],
+        "faceVertexCounts": [3], "faceVertexIndices": [0, 1, 2]}])"));
+    CHECK_FALSE(told_of(R"(], "points": [{"at": [[0, 0, 0]], "radius": 0.1}])"));
+    CHECK_FALSE(told_of(R"(], "labels": [{"text": "here", "at": [0, 0, 0]}])"));
+    CHECK_FALSE(told_of(R"(], "volumes": [{"grid": {"size": [2,2,2], "origin": [-1,-1,-1], "spacing": [1,1,1],
+        "scalars": [0,1,0,1,0,1,0,1]}, "transferFunction": {"points": [
+            {"value": 0, "color": [1,0,0], "extinction": 0.1}, {"value": 1, "color": [0,0,1], "extinction": 1}]}}])"));
+}
