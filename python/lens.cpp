@@ -84,14 +84,11 @@ void bind_lens(py::module_& module) {
              "surfaces and their sum (spherical, coma, astigmatism, petzval, distortion,\n"
              "axial_colour, lateral_colour), image_slope and image_height.\n"
              "Over twice image_slope they are transverse aberrations.")
-        .def(
-            "spot", spot_dict, py::kw_only(), py::arg("pupil_radius") = 0.0, py::arg("field") = 0.0,
-            py::arg("line") = "d", py::arg("rings") = SpotRequest().rings, py::arg("shift") = 0.0,
-            "Where exact rays of a beam from infinity, `field` degrees from the axis, meet the plane `shift` "
-            "behind the\n"
-            "paraxial focus of imaging_section: points, asked (rays sent), centroid, rms_radius, radius. "
-            "pupil_radius 0: the "
-            "stop's.")
+        .def("spot", spot_dict, py::kw_only(), py::arg("pupil_radius") = 0.0, py::arg("field") = 0.0,
+             py::arg("line") = "d", py::arg("rings") = SpotRequest().rings, py::arg("shift") = 0.0,
+             "Where exact rays of a beam from infinity, `field` degrees from the axis in imaging_section,\n"
+             "meet the plane `shift` behind the paraxial focus of that section: points, asked (rays sent),\n"
+             "centroid, rms_radius, radius. pupil_radius 0: the stop's.")
         .def("trace", traced, py::arg("origin"), py::arg("direction"), py::kw_only(), py::arg("line") = "d",
              "An exact ray through all surfaces, z along the axis from the first vertex: (origin on the last "
              "surface, unit\n"

@@ -31,10 +31,14 @@ Json numbers_json(const T& of, const std::array<NamedNumber<T>, kCount>& numbers
 
 /// As transverse aberrations: `scale` of the sums, and twice that of the chromatic ones.
 std::string terms_line(const std::string& name, const SeidelTerms& t, double scale) {
+    constexpr double kColumn = 1000;  // what has as many digits before the point, and six behind it, fits
     std::string text = fmt::format("{:>7}", name);
     for (const double sum : {t.spherical, t.coma, t.astigmatism, t.petzval, t.distortion, 2 * t.axial_colour,
-                             2 * t.lateral_colour})
-        text += fmt::format(" {:10.6f}", sum * scale + 0.0);  // never -0
+                             2 * t.lateral_colour}) {
+        const double number = sum * scale + 0.0;  // never -0
+        text +=
+            std::fabs(number) < kColumn ? fmt::format(" {:10.6f}", number) : fmt::format(" {:10.3e}", number);
+    }
     return text + "\n";
 }
 
@@ -104,7 +108,7 @@ Answer run(const LensOptions& options, Console& console) {
     const LensSection section = imaging_section(lens);
     if (section == LensSection::kX)
         console.warn(
-            "along y it has no focal length: first order, Seidel's sums, their field and the pupil are "
+            "along y it has no focal length: first order, Seidel's sums, the field and the pupil are "
             "those of its section along x");
     else if (!is_round(lens))
         console.warn("first order, Seidel's sums and the pupil are those of its section along y");
@@ -137,7 +141,8 @@ Answer run(const LensOptions& options, Console& console) {
                              {"rms_radius", spot.rms_radius},
                              {"radius", spot.radius}};
     answer.text += fmt::format("\nspot of {} of {} rays: rms radius {:.4g}, radius {:.4g}, at {:.6g}\n",
-                               spot.points.size(), spot.asked, spot.rms_radius, spot.radius, spot.centroid.y);
+                               spot.points.size(), spot.asked, spot.rms_radius, spot.radius,
+                               section == LensSection::kX ? spot.centroid.x : spot.centroid.y);
     if (options.output.empty()) return answer;
     std::string table = "x,y\n";
     for (const Vec2& p : spot.points) table += fmt::format("{},{}\n", p.x, p.y);

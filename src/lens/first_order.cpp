@@ -63,12 +63,29 @@ std::vector<ParaxialPlace> paraxial_ray(const LensPrescription& lens, const Para
     return places;
 }
 
+namespace {
+
+/// Whether a ray along the axis leaves along another way. Its slope behind, times the index there, is the sum
+/// of what each surface bends it by: where these cancel, rounding is left.
+bool gathers(const LensPrescription& lens, SpectralLine line) {
+    constexpr double kRounding = 1e-12;
+    if (lens.rows.empty()) return false;
+    const std::vector<double> index = signed_indices(lens_media(lens), line);
+    const std::vector<ParaxialPlace> ray = paraxial_ray(lens, {1, 0}, line);
+    double bent = 0;
+    for (std::size_t i = 0; i < ray.size(); ++i)
+        bent += std::fabs(ray[i].height * vertex_curvature(lens.rows[i].side) * (index[i + 1] - index[i]));
+    return std::fabs(index.back() * ray.back().slope) > kRounding * bent;
+}
+
+}  // namespace
+
 LensSection imaging_section(const LensPrescription& lens) {
-    const auto gathers = [&](LensSection section) {
-        const std::vector<ParaxialPlace> ray = paraxial_ray(section_of(lens, section), {1, 0});
-        return !ray.empty() && ray.back().slope != 0;
+    const auto gathers_along = [&](LensSection section) {
+        return gathers(section_of(lens, section), SpectralLine::kD);
     };
-    return !gathers(LensSection::kY) && gathers(LensSection::kX) ? LensSection::kX : LensSection::kY;
+    return !gathers_along(LensSection::kY) && gathers_along(LensSection::kX) ? LensSection::kX
+                                                                             : LensSection::kY;
 }
 
 FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
@@ -77,7 +94,10 @@ FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
     const std::vector<ParaxialPlace> parallel = paraxial_ray(lens, {1, 0}, line),
                                      central = paraxial_ray(lens, {0, 1}, line);
     const ParaxialPlace &a = parallel.back(), &b = central.back();
-    if (a.slope == 0)
+    for (const double number : {a.height, a.slope, b.height, b.slope})
+        if (!std::isfinite(number))
+            throw InputError(lens.file, "", "is bent so strongly that its rays are no numbers");
+    if (!gathers(lens, line))
         throw InputError(lens.file, "",
                          std::string("has no focal length") + (is_round(lens) ? "" : " along y") +
                              ": rays along the axis leave along the axis");

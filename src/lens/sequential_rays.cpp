@@ -108,13 +108,15 @@ Spot spot_of(const LensPrescription& lens, const SpotRequest& request) {
         throw UsageError("a spot has 1 to " + std::to_string(kMostRings) + " rings of rays");
     if (!(std::fabs(request.field_degrees) < 90))
         throw UsageError("a field is within 90 degrees of the axis");
-    const FirstOrder first = first_order(section_of(lens, imaging_section(lens)));
+    const LensSection section = imaging_section(lens);
+    const FirstOrder first = first_order(section_of(lens, section));
     const double pupil = request.pupil_radius > 0 ? request.pupil_radius : first.entrance_radius;
     if (!(pupil > 0) || !std::isfinite(pupil) || !std::isfinite(first.entrance_pupil))
         throw InputError(lens.file, lens.rows[stop_row(lens)].place,
                          "the stop has no aperture, or no image in front: the size of the beam is not known");
     const double angle = request.field_degrees * std::numbers::pi / 180;
-    const Vec3 direction(0, std::sin(angle), std::cos(angle));
+    Vec3 direction(0, 0, std::cos(angle));
+    direction[section == LensSection::kX ? 0 : 1] = std::sin(angle);
     const LensPose image = lens_poses(lens).back();
     const double plane = first.back_focal_length - lens.rows.back().thickness +
                          lens_media(lens).back().sense * request.focus_shift;

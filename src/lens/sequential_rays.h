@@ -22,14 +22,14 @@ std::optional<Ray> trace_lens(const LensPrescription& lens, const Ray& ray,
 
 struct SpotRequest {
     double pupil_radius = 0;   // of the beam in the entrance pupil; 0: the stop's
-    double field_degrees = 0;  // from the axis, in the yz plane
+    double field_degrees = 0;  // from the axis, in the plane of the imaging section
     SpectralLine line = SpectralLine::kD;
     int rings = 8;           // of rays: 6 k on the k-th, and one in the middle
     double focus_shift = 0;  // of the plane, from the paraxial focus at the d line, along the light
 };
 
-/// Where a beam from infinity meets a plane across the axis, in the image's frame. Focus and pupil are those
-/// of the imaging section.
+/// Where a beam from infinity meets a plane across the axis, in the image's frame. Field, focus and pupil are
+/// those of the imaging section.
 struct Spot {
     std::vector<Vec2> points;  // x and y in the plane, of rays that come through
     std::size_t asked = 0;     // rays that were sent

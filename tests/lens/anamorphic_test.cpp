@@ -195,6 +195,44 @@ TEST_CASE("a cylinder lens gathers light in one section, at the thin lens' dista
     }
 }
 
+TEST_CASE("a meniscus that bends nothing along y leaves the section to the cylinder behind it",
+          "[lens][bad-input]") {
+    const double n = 1.5168;
+    for (const auto& [radius, thickness] : {std::pair{50.0, 4.0}, {70.0, 3.0}, {37.0, 5.0}, {41.3, 6.1}}) {
+        CAPTURE(radius);
+        LensPrescription lens{"afocal", "afocal", {}};
+        lens.rows.resize(4);
+        lens.rows[0] = {{1 / radius, 0, {}, 8}, thickness, {"glass", n, 0}};
+        lens.rows[1] = {{1 / (radius - thickness * (n - 1) / n), 0, {}, 8}, 5};
+        lens.rows[2] = {{1.0 / 30, 0, {}, 8, {}, SideForm::kToricX}, 4, {"glass", n, 0}};
+        lens.rows[3].side.aperture = 8;
+        CHECK(imaging_section(lens) == LensSection::kX);
+        CHECK_THROWS_AS(first_order(lens), InputError);
+        CHECK(first_order(section_of(lens, LensSection::kX)).focal_length > 30 / (n - 1));
+        // A weak lens is one: the radius is off by some hundredths of a nanometre.
+        lens.rows[1].side.curvature *= 1 + 1e-9;
+        CHECK(imaging_section(lens) == LensSection::kY);
+    }
+}
+
+TEST_CASE("the field of a spot lies in the imaging section, where the image height is", "[lens][law]") {
+    LensPrescription lens{"cylinder", "cylinder", {}};
+    lens.rows.resize(2);
+    for (const SideForm form : {SideForm::kToricX, SideForm::kToricY}) {
+        lens.rows[0] = {{1.0 / 30, 0, {}, 8, {}, form}, 4, {"glass", 1.5168, 0}};
+        lens.rows[1] = {{}, 0};
+        const LensSection section = imaging_section(lens);
+        const int k = section == LensSection::kX ? 0 : 1;
+        const double slope = std::tan(20 * 3.141592653589793 / 180);
+        const SeidelSums sums = seidel_sums(section_of(lens, section), {0.01, slope});
+        const Spot spot = spot_of(lens, {.pupil_radius = 0.01, .field_degrees = 20});
+        CHECK(std::fabs(sums.image_height - 30 / 0.5168 * slope) < 1e-9);
+        // Distortion is a part in a hundred.
+        CHECK(std::fabs(spot.centroid[k] / sums.image_height - 1) < 0.01);
+        CHECK(std::fabs(spot.centroid[1 - k]) < 1e-9);
+    }
+}
+
 TEST_CASE(
     "each section of an anamorphic lens has its focus, and its rays those of the round lens of its profile",
     "[lens][law]") {

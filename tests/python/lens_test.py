@@ -167,6 +167,11 @@ def test_an_anamorphic_lens_has_two_focal_lengths(command, tmp_path):
     assert answer["seidel"]["sum"] == lens.seidel(1, 0, section="x")["sum"]
     assert answer["spot"]["radius"] == pytest.approx(1, rel=1e-3)
     assert any("along y it has no focal length" in warning for warning in answer["warnings"])
+    run, answer = command("lens", across, "--field", 20, "--pupil", 1)
+    (x, y), height = answer["spot"]["centroid"], answer["seidel"]["image_height"]
+    assert height == pytest.approx(21.13, abs=0.01)
+    assert x == pytest.approx(height, rel=0.01) and y == pytest.approx(0, abs=1e-9)
+    assert lens.spot(pupil_radius=1, field=20)["centroid"] == (x, y)
     side = {"aperture": 1, "radius": 3, "rotationRadius": -4, "profileAlong": "x"}
     bowl = trilens.primitive_surface("lens", axis=(0, 0, 1), front=side, back=(0, 1), thickness=1)
     assert bowl.face_count == 14
