@@ -109,10 +109,25 @@ bool is_finite(const LensRow& row) {
          {row.side.curvature, row.side.conic, row.side.aperture, row.side.across_curvature,
           row.side.across_conic, row.thickness, row.glass.index, row.glass.abbe, row.hole, row.obscuration})
         finite = finite && std::isfinite(number);
+    for (const auto* terms : {&row.side.coefficients, &row.side.normal_departures})
+        for (const double term : *terms) finite = finite && std::isfinite(term);
     for (const LensPose* pose : {&row.before, &row.after})
         finite = finite && std::isfinite(dot(pose->shift, pose->shift)) &&
                  std::isfinite(glm::determinant(pose->turn));
     return finite;
+}
+
+/// What is wrong with a side up to its rim; null: nothing, or it has none.
+const char* rim_fault(const LensSide& side) {
+    const double r = side.aperture;
+    if (!(r > 0)) return nullptr;
+    if (!(side_room(side) >= kLeastRimRoom)) return "its aperture reaches to where the side turns back";
+    for (const Vec2& p : {Vec2(r, 0), Vec2(0, r)}) {
+        const SideSag rim = sag_over(side, p);
+        if (!std::isfinite(rim.z) || !std::isfinite(dot(rim.slope, rim.slope)))
+            return "its side is not finite";
+    }
+    return nullptr;
 }
 
 /// What is wrong with a row's thickness, in such a medium; empty: nothing.
@@ -147,6 +162,9 @@ void check_prescription(const LensPrescription& lens) {
         if (row.obscuration > 0 && row.side.aperture > 0 && row.obscuration >= row.side.aperture)
             fail(lens, row, "its obscuration is as large as its aperture");
         if (row.mirror && !row.glass.is_air()) fail(lens, row, "is a mirror, and has a glass of its own");
+        const bool is_used = row.mirror || !media[i].glass.is_air() || !media[i + 1].glass.is_air();
+        const char* const of_rim = is_used ? rim_fault(row.side) : nullptr;
+        if (of_rim) fail(lens, row, of_rim);
         const std::string fault = thickness_fault(row, media[i + 1], i + 1 == lens.rows.size(), centred);
         if (!fault.empty()) fail(lens, row, fault);
     }

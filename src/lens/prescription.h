@@ -109,7 +109,8 @@ std::size_t stop_row(const LensPrescription& lens);
 
 /// Throws InputError with the file and the place of the row where there are no rows, neither glass nor
 /// mirror, two stops, glass behind the last surface, a thickness in glass that is not along the light, or one
-/// in air of a lens that is centred, or an obscuration of which no shell can be made (see lens_obscurations).
+/// in air of a lens that is centred, an aperture that reaches to where its side turns back (see
+/// kLeastRimRoom), or an obscuration of which no shell can be made (see lens_obscurations).
 void check_prescription(const LensPrescription& lens);
 
 /// A body of a lens, of glass from row `first` to the next, or behind a mirror. Its front's vertex is the

@@ -154,10 +154,12 @@ TEST_CASE("cylinders of CODE V are bent along the axis whose radius they have", 
     CHECK(along_x.curvature == 1.0 / 80);
     CHECK(along_x.across_curvature == 0);
     CHECK(code_v("CYL; K 0; A 0").rows[0].side.form == SideForm::kToricY);
+    CHECK(code_v("CYL; A 1e-6; B 1e-9; A 0; B 0").rows[0].side.form == SideForm::kToricY);
     const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
     CHECK(refused("CYL; RDX 80") ==
           "a.seq: line 4: a cylinder (CYL) is bent along y (RDY) or along x (RDX), not along both");
     CHECK(refused("CYL\nK -1") == "a.seq: line 5: K is not of a cylinder (CYL)");
+    CHECK(refused("CYL\nA 0\nB 1e-6; A 0") == "a.seq: line 6: A to G are not of a cylinder (CYL)");
     CHECK(refused("CYL\nA 1e-6") == "a.seq: line 5: A to G are not of a cylinder (CYL)");
     CHECK(refused("CYL\nYTO") == "a.seq: line 5: YTO: the surface has a form already, CYL in line 4");
 }
@@ -174,6 +176,11 @@ TEST_CASE("Q-type aspheres of CODE V are those of the polynomials", "[scene][len
     CHECK(strong.coefficients == qcon_coefficients(terms, 9));
     CHECK(strong.conic == -0.5);
     CHECK(is_conicoid(code_v("SPS QBF").rows[0].side));
+    // The last number of each counts, by either name.
+    CHECK(is_conicoid(code_v("SPS QBF; SCO C1 9; SCO C3 0.02; SCO C3 0").rows[0].side));
+    CHECK(code_v("SPS QBF; SCO C3 0.4; SCO C1 9; SCO QB4 0.02; SCO C5 0.1; SCO C5 -0.01")
+              .rows[0]
+              .side.normal_departures == mild.normal_departures);
     const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
     CHECK(refused("SPS QBF\nK -1") == "a.seq: line 5: SPS QBF departs from a sphere: K must be 0");
     CHECK(refused("SPS QBF\nSCO C3 0.02") ==
@@ -193,8 +200,48 @@ TEST_CASE("Q-type aspheres of CODE V are those of the polynomials", "[scene][len
     }
     CHECK(refused("SPS XYP") ==
           "a.seq: line 4: SPS XYP: of special surfaces Q-type ones (SPS QBF, SPS QCN) are read");
+    CHECK(refused("SPS") ==
+          "a.seq: line 4: SPS: of special surfaces Q-type ones (SPS QBF, SPS QCN) are read");
     CHECK(refused("SPS QBF\nSCO") == "a.seq: line 5: SCO needs a coefficient");
     CHECK(refused("SPS QBF\nSCO C3") == "a.seq: line 5: SCO needs a number");
+}
+
+TEST_CASE("sides that no number describes, and rims wider than the side, are refused with their place",
+          "[scene][lens][bad-input]") {
+    const auto refused = [](const std::string& words) { return refusal_of([&] { code_v(words); }); };
+    const std::string infinite = "a.seq: line 3: a number of the surface is not finite",
+                      turned = "a.seq: line 3: its aperture reaches to where the side turns back";
+    CHECK(refused("SPS QBF; SCO C1 1e-200; SCO C3 0.02") == infinite);
+    CHECK(refused("SPS QCN; SCO C1 1e-200; SCO C3 0.02") == infinite);
+    CHECK(refused("CYL; CUX 1e308; CUY 0; CIR 8") == turned);
+    CHECK(refused("CIR 50") == turned);
+    CHECK(refused("CIR 49").empty());
+    CHECK(refused("ASP; A 1e300; B 1e308; CIR 8") == "a.seq: line 3: its side is not finite");
+    for (const std::string kind : {"0", "1"}) {
+        CAPTURE(kind);
+        CHECK(refusal_of([&] {
+                  zemax("QED_TYPE",
+                        "  CONI 0\n  XDAT 1 " + kind + "\n  XDAT 2 1\n  XDAT 3 1e-200\n  XDAT 4 0.02\n");
+              }) == "a.zmx: line 4: a number of the surface is not finite");
+    }
+    // DIAM is the half diameter; between air and air nothing turns.
+    CHECK(refusal_of([] { zemax("STANDARD", "  CURV 0.2\n  CONI 0\n"); }) ==
+          "a.zmx: line 4: its aperture reaches to where the side turns back");
+    CHECK(parse_lens("RDM\nSO 0 1E13\nS 5 1\nCIR 9\nS 50 4 NBK7\nS 0 9\nSI 0 0\n", "a.seq").rows.size() == 3);
+}
+
+TEST_CASE("a Zemax file that ends within its lens is refused with the line of the glass",
+          "[scene][lens][bad-input]") {
+    const std::string text =
+        "SURF 0\n  DISZ INFINITY\nSURF 1\n  CURV 0.02\n  DISZ 4\n  GLAS N-BK7\nSURF 2\n  DISZ 9\n";
+    const auto refused = [](const std::string& lines) {
+        return refusal_of([&] { parse_lens(lines, "a.zmx"); });
+    };
+    const std::string early = "the last surface, the image, has glass: the file ends early";
+    CHECK(refused(text + "SURF 3\n  CURV 0.01\n").empty());
+    CHECK(refused(text + "SURF 3\n  CURV 0.01\n  GLAS F2\n") == "a.zmx: line 11: " + early);
+    CHECK(refused(text + "SURF 3\n  GLAS MIRROR\n") == "a.zmx: line 10: " + early);
+    CHECK(refused(text.substr(0, text.find("SURF 2"))) == "a.zmx: line 6: " + early);
 }
 
 TEST_CASE("a scene's anamorphic sides are those of its bodies, and keys that disagree are refused",

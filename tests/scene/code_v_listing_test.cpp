@@ -8,6 +8,7 @@
 
 #include "lens/sequential_rays.h"
 #include "scene/formats/lens_file.h"
+#include "scene/read/read_lens.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -151,7 +151,9 @@ TEST_CASE("a CODE V sequence is read in radii and in curvatures, over lines and 
     unknown.replace(unknown.find("NBK7"), 4, "NBK6");
     CHECK(refusal(unknown, "a.seq").starts_with("a.seq: line 5: unknown glass 'NBK6'; did you mean"));
     known.replace(known.find("RDM"), 3, "CUM");
-    CHECK(parse_code_v(known, "a.seq").rows[1].side.curvature == -100);
+    known.replace(known.find("S 50"), 4, "S 0.02");
+    known.replace(known.find("S1 -100.0"), 9, "S1 -0.01");
+    CHECK(parse_code_v(known, "a.seq").rows[1].side.curvature == -0.01);
     for (const std::string word : {"REFL", "SPS XYP", "H 1e-9", "GRT", "GLB S1", "RMD TIR", "YDE three"}) {
         std::string bent = known;
         bent.insert(bent.find("ASP"), word + "\n");

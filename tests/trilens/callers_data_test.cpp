@@ -338,6 +338,14 @@ TEST_CASE("what looks through meshes by itself refuses what does not fit togethe
 }
 
 TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]") {
+    for (std::size_t term = 0; term < kAsphereTerms; ++term)
+        for (const bool along_normal : {false, true}) {
+            LensPrescription lens{"odd", "odd", {}};
+            lens.rows = {{{0.02, 0, {}, 0}, 4, {"glass", 1.5, 60}}, {{-0.02, 0, {}, 0}, 0}};
+            LensSide& side = lens.rows[0].side;
+            (along_normal ? side.normal_departures : side.coefficients)[term] = kInfinity;
+            CHECK_THROWS_AS(check_prescription(lens), InputError);
+        }
     for (const std::string& text : kOddTexts) {
         only_errors("load_lens", [&] { load_lens(text); });
         only_errors("parse_lens_side", [&] { parse_lens_side(text, text); });

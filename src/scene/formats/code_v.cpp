@@ -164,7 +164,7 @@ class SequenceReader : LensLines {
     /// "SPS QBF": special surfaces have their kind in the second word.
     bool take_form(const std::string& key, const std::vector<std::string_view>& words) {
         const std::string kind = words.size() > 1 ? in_capitals(words[1]) : "";
-        const std::string name = key == "SPS" ? key + " " + kind : key;
+        const std::string name = key == "SPS" && !kind.empty() ? key + " " + kind : key;
         if (forms_.back().take_form(name, lens_.file, place())) return true;
         if (key == "SPS") fail(name + ": of special surfaces Q-type ones (SPS QBF, SPS QCN) are read");
         return false;

@@ -65,8 +65,7 @@ void CodeVForm::take_number(const std::string& key, const PlacedNumber& number) 
     } else if (key == "KX" || key == "KY") {
         (key == "KX" ? x_conic_ : y_conic_) = number;
     } else {
-        terms_.at(kTerms.find(key[0]) + 1) = number.value;
-        if (number.value != 0) term_ = number;
+        terms_.at(kTerms.find(key[0]) + 1) = number;
     }
 }
 
@@ -78,7 +77,10 @@ void CodeVForm::take_coefficient(const std::string& name, const PlacedNumber& nu
     if (!is_q_type(name_)) fail("before its surface' form: it is read of Q-type ones (SPS QBF, SPS QCN)");
     const int index = coefficient_of(name, name_);
     if (index == 0) fail("is not read: C1 is the normalization radius, from C3 on are the terms");
-    if (number.value == 0) return;
+    if (number.value == 0) {
+        coefficients_.erase(index);
+        return;
+    }
     if (index == kFirstQTerm - 1) fail("of a Q-type surface is not known: conic constants are read from K");
     if (index - kFirstQTerm >= static_cast<int>(kQTerms)) fail("is beyond r^16");
     coefficients_[index] = number;
@@ -88,6 +90,11 @@ void CodeVForm::refuse(Refused number, const std::string& why, const std::string
     if (this->*number) throw InputError(file, (this->*number)->place, why);
 }
 
+void CodeVForm::refuse_terms(const std::string& why, const std::string& file) const {
+    for (const PlacedNumber& term : terms_)
+        if (term.value != 0) throw InputError(file, term.place, "A to G are not of " + why);
+}
+
 void CodeVForm::refuse_of_others(const std::string& file) const {
     if (form_of(name_) == SideForm::kRound)
         refuse(&CodeVForm::x_curvature_,
@@ -95,10 +102,9 @@ void CodeVForm::refuse_of_others(const std::string& file) const {
     if (name_ != "AAS")
         for (const Refused conic : {&CodeVForm::x_conic_, &CodeVForm::y_conic_})
             refuse(conic, "KX and KY are read of biconic surfaces (AAS)", file);
-    if (name_ == "AAS") refuse(&CodeVForm::term_, "A to G are not of an anamorphic asphere (AAS)", file);
-    if (name_ == "CYL") refuse(&CodeVForm::term_, "A to G are not of a cylinder (CYL)", file);
-    if (is_q_type(name_))
-        refuse(&CodeVForm::term_, "A to G are not of a Q-type surface (" + name_ + ")", file);
+    if (name_ == "AAS") refuse_terms("an anamorphic asphere (AAS)", file);
+    if (name_ == "CYL") refuse_terms("a cylinder (CYL)", file);
+    if (is_q_type(name_)) refuse_terms("a Q-type surface (" + name_ + ")", file);
     if (name_ == "CYL" && conic_ && conic_->value != 0)
         refuse(&CodeVForm::conic_, "K is not of a cylinder (CYL)", file);
     if (name_ == "SPS QBF" && conic_ && conic_->value != 0)
@@ -138,7 +144,7 @@ void CodeVForm::add_q_terms(LensSide& side, const std::string& file) const {
 void CodeVForm::shape(LensSide& side, const std::string& file) const {
     refuse_of_others(file);
     side.form = form_of(name_);
-    side.coefficients = terms_;
+    for (std::size_t i = 0; i < terms_.size(); ++i) side.coefficients[i] = terms_[i].value;
     if (conic_) side.conic = conic_->value;
     if (x_curvature_) side.across_curvature = x_curvature_->value;
     if (x_conic_) side.across_conic = x_conic_->value;

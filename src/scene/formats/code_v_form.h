@@ -2,6 +2,7 @@
 // has been read.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,10 +26,10 @@ class CodeVForm {
     /// has one form.
     bool take_form(const std::string& name, const std::string& file, const std::string& place);
 
-    /// RDX, CUX, K, KX, KY and A to G.
+    /// RDX, CUX, K, KX, KY and A to G; the last number of each counts.
     void take_number(const std::string& key, const PlacedNumber& number);
 
-    /// SCO: "C1", "C3", ..., or NRADIUS, QB4, QB6, ... as CODE V lists them.
+    /// SCO: "C1", "C3", ..., or NRADIUS, QB4, QB6, ... as CODE V lists them; the last number of each counts.
     void take_coefficient(const std::string& name, const PlacedNumber& number, const std::string& file);
 
     /// Adds all to a side that has the curvature of RDY.
@@ -37,14 +38,14 @@ class CodeVForm {
   private:
     using Refused = std::optional<PlacedNumber> CodeVForm::*;
     void refuse(Refused number, const std::string& why, const std::string& file) const;
+    void refuse_terms(const std::string& why, const std::string& file) const;
     void refuse_of_others(const std::string& file) const;
     void bend_cylinder(LensSide& side, const std::string& file) const;
     void add_q_terms(LensSide& side, const std::string& file) const;
 
     std::string name_ = {}, place_ = {};
     std::optional<PlacedNumber> x_curvature_ = {}, conic_ = {}, x_conic_ = {}, y_conic_ = {};
-    std::optional<PlacedNumber> term_ = {};  // the last one that is not 0
-    std::array<double, kAsphereTerms> terms_{};
+    std::array<PlacedNumber, kAsphereTerms> terms_{};
     std::map<int, PlacedNumber> coefficients_ = {};
 };
 

@@ -27,6 +27,7 @@ struct ZemaxSurface {
         std::string written, place;  // "PARM 2", "line 17"
     };
     std::vector<Parameter> parameters, extra;  // PARM, XDAT
+    std::string glass_place = {};              // of a mirror, too
     double clear_radius = 0;                   // of a circular aperture; 0: the surface has none but its own
     std::string aperture_fault = {}, aperture_place = {};
 
@@ -62,6 +63,9 @@ class ZemaxReader : LensLines {
             at = end + 1;
         }
         if (surfaces_.empty()) throw InputError(lens_.file, "", "has no line SURF: it is no Zemax lens file");
+        if (!surfaces_.back().glass_place.empty())
+            throw InputError(lens_.file, surfaces_.back().glass_place,
+                             "the last surface, the image, has glass: the file ends early");
         if (surfaces_.size() < 3) throw InputError(lens_.file, "", "has no surface between object and image");
         for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) add(surfaces_[i], i + 2 == surfaces_.size());
         lens_.image = bend_;
@@ -121,6 +125,7 @@ class ZemaxReader : LensLines {
         } else if (key == "PARM" || key == "XDAT") {
             take_parameter(words, key == "PARM" ? surface.parameters : surface.extra);
         } else if (key == "GLAS") {
+            surface.glass_place = place();
             row.mirror = words.size() > 1 && words[1] == "MIRROR";
             row.glass = row.mirror ? Glass() : glass(words);
         }
