@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
 constexpr std::size_t kMostKeys = 1u << 20;  // the same where samples have no record but a key
 constexpr std::size_t kBandsAtOnce = 3;      // on their way: seen, shaded, taken
-constexpr std::size_t kPixelsPerTask = 256;
+constexpr std::size_t kPixelsPerTask = 256, kSamplesPerTask = 1024;
 constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 
 /// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
@@ -51,8 +51,9 @@ SampleColour mean_colour(const PixelFilter& filter, std::span<const SampleColour
 /// The samples of a window and of the pixels around it that a filter reaches, with their colours.
 class FilteredSamples {
   public:
-    FilteredSamples(const World& world, Viewer& viewer, const SampleGrid& window, const PixelFilter& filter)
-        : filter_(filter), grid_(window) {
+    FilteredSamples(const PixelSource& source, const SampleGrid& window)
+        : filter_(source.filter), grid_(window) {
+        const auto& [world, viewer, filter, progress] = source;
         const Film& film = world.scene.film;
         grid_.x0 = std::max(0, window.x0 - filter.reach);
         grid_.y0 = std::max(0, window.y0 - filter.reach);
@@ -62,9 +63,10 @@ class FilteredSamples {
         viewer.view(grid_, views);
         colours_.resize(grid_.size());
         const RayDifferentials differentials(world, viewer, grid_);
-        parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
-            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from),
-                           grid_.side == 1 || gathers_light(world) ? &differentials : nullptr);
+        parallel_for(colours_.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
+            if (source.progress.cancelled()) throw Interrupted();
+            sample_colours(source.world, views, from, std::span(colours_).subspan(from, to - from),
+                           grid_.side == 1 || gathers_light(source.world) ? &differentials : nullptr);
             for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
         });
     }
@@ -154,28 +156,26 @@ struct Band {
 
 /// What all bands are drawn of.
 struct BandSource {
-    const World& world;
-    Viewer& viewer;
-    const PixelFilter& filter;
+    PixelSource pixels;
     bool by_fragments = false;  // see makes_fragments()
     bool bounds_coverage = false;
     const MarkPainter* marks = nullptr;
 };
 
 void view_band(const BandSource& source, Band& band) {
-    const auto& [world, viewer, filter, by_fragments, bounds_coverage, marks] = source;
+    const auto& [world, viewer, filter, progress] = source.pixels;
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
     band.fragments.reset();
-    if (by_fragments)
-        band.fragments = std::make_unique<FragmentColours>(world, viewer, grid, filter);
+    if (source.by_fragments)
+        band.fragments = std::make_unique<FragmentColours>(source.pixels, grid);
     else if (filter.reach > 0)
-        band.filtered = std::make_unique<FilteredSamples>(world, viewer, grid, filter);
+        band.filtered = std::make_unique<FilteredSamples>(source.pixels, grid);
     if (grid.side == 1 || (!band.filtered && !band.fragments)) viewer.view(grid, band.views);
     band.filter_reaches = filter.reach > 0;
     if (grid.side > 1 && (!band.fragments || band.filter_reaches))
         viewer.view({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
-    if (!bounds_coverage) return;
+    if (!source.bounds_coverage) return;
     band.shown.clear();
     for (const SampleView& view : band.middle().samples) band.shown.push_back(shown_mesh(world, view));
     band.coverage.resize(band.shown.size());
@@ -185,7 +185,7 @@ void view_band(const BandSource& source, Band& band) {
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
 void find_colours(const BandSource& source, const Band& band, std::size_t first,
                   std::span<SampleColour> colours) {
-    const auto& [world, viewer, filter, by_fragments, bounds_coverage, marks] = source;
+    const auto& [world, viewer, filter, progress] = source.pixels;
     const SampleGrid& grid = band.grid;
     if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
@@ -218,7 +218,8 @@ void paint_marks(const BandSource& source, const Band& band, std::size_t first,
         const SampleView& view = band.middle().samples[first + i];
         source.marks->paint(band.grid.x0 + static_cast<int>((first + i) % width),
                             band.grid.y0 + static_cast<int>((first + i) / width),
-                            view.optic == kNone ? kNone : source.world.optics[view.optic].mesh, colours[i]);
+                            view.optic == kNone ? kNone : source.pixels.world.optics[view.optic].mesh,
+                            colours[i]);
     }
 }
 
@@ -265,7 +266,7 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
 
 /// Its pixels, from that `first` of the canvas on.
 LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t first, Canvas& canvas) {
-    const World& world = source.world;
+    const World& world = source.pixels.world;
     const SampleViews& middle = band.middle();
     LayerStatistics counts;
     counts.projected_facets = middle.projected_facets;
@@ -289,6 +290,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
         LayerStatistics own;
         std::array<SampleColour, kPixelsPerTask> colours;
         for (std::size_t start = from; start < to; start += kPixelsPerTask) {
+            if (source.pixels.progress.cancelled()) throw Interrupted();
             const std::size_t end = std::min(to, start + kPixelsPerTask);
             const std::span<SampleColour> here = std::span(colours).first(end - start);
             find_colours(source, band, start, here);
@@ -316,8 +318,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     const int rows =
         band_rows(static_cast<std::size_t>(width * side * side), by_fragments ? kMostKeys : kMostBandSamples);
     const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
-    const std::size_t slots =
-        std::min({bands, kBandsAtOnce, static_cast<std::size_t>(thread_count())});
+    const std::size_t slots = std::min({bands, kBandsAtOnce, static_cast<std::size_t>(thread_count())});
 
     // Where pixels go to a sink each band on its way has a canvas of its own, otherwise all share the
     // image's.
@@ -334,7 +335,8 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
-    const BandSource source{world, viewer, filter, by_fragments, canvases[0].wants_coverage(), output.marks};
+    const BandSource source{
+        {world, viewer, filter, progress}, by_fragments, canvases[0].wants_coverage(), output.marks};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {

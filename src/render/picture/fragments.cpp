@@ -93,12 +93,12 @@ class FragmentColours::OpenPixels {
     std::vector<RowOfPixels> rows_;
 };
 
-FragmentColours::FragmentColours(const World& world, Viewer& viewer, const SampleGrid& window,
-                                 const PixelFilter& filter)
-    : world_(world),
-      viewer_(viewer),
-      filter_(filter),
-      grid_(with_margin(window, world.scene.film, filter.reach)) {
+FragmentColours::FragmentColours(const PixelSource& source, const SampleGrid& window)
+    : world_(source.world),
+      viewer_(source.viewer),
+      filter_(source.filter),
+      progress_(source.progress),
+      grid_(with_margin(window, source.world.scene.film, source.filter.reach)) {
     const OpenPixels open(viewer_, grid_);
     viewer_.view({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
     find_fragments(open);
@@ -218,6 +218,7 @@ void FragmentColours::shade_centres() {
             shown.push_back({&centres_.samples[p], pixel_corner(p), {}});
             of.push_back(first_[p]);
         }
+        if (progress_.cancelled()) throw Interrupted();
         std::vector<ShadedFragment> shaded(shown.size());
         shade_fragments({world_, viewer_, centres_, grid_.side}, shown, shaded);
         for (std::size_t k = 0; k < of.size(); ++k) shaded_[of[k]] = shaded[k];
@@ -254,6 +255,7 @@ void FragmentColours::shade_samples() {
             for (std::size_t k = from; k < to; ++k)
                 shown.push_back(
                     {&views.samples[k], pixel_corner(now[k].pixel), members_of(fragments_[now[k].fragment])});
+            if (progress_.cancelled()) throw Interrupted();
             std::vector<ShadedFragment> shaded(shown.size());
             shade_fragments({world_, viewer_, views, grid_.side}, shown, shaded);
             for (std::size_t k = from; k < to; ++k) shaded_[now[k].fragment] = shaded[k - from];

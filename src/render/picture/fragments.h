@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/util/error.h"
 #include "render/engines/engine.h"
 #include "render/picture/channels.h"
 #include "render/picture/sample_colour.h"
@@ -60,11 +61,20 @@ struct FragmentCounts {
     std::size_t pixels_by_sample = 0;  // that have such rays
 };
 
+/// What pixels are made of. What is made of them throws Interrupted soon after the progress is cancelled.
+struct PixelSource {
+    const World& world;
+    Viewer& viewer;
+    const PixelFilter& filter;
+    const Progress& progress;
+};
+
 /// The colours of all fragments in a window and the pixels around it that a filter reaches.
 class FragmentColours {
   public:
-    /// `window`: with the samples of a pixel that the film has, in any order. `viewer` has keys.
-    FragmentColours(const World& world, Viewer& viewer, const SampleGrid& window, const PixelFilter& filter);
+    /// `window`: with the samples of a pixel that the film has, in any order. The source's viewer has keys;
+    /// all of the source must outlive this.
+    FragmentColours(const PixelSource& source, const SampleGrid& window);
 
     /// The pixel of the window as the filter makes it. Pixels beyond the film have no samples: the weights of
     /// those that there are count as one.
@@ -108,6 +118,7 @@ class FragmentColours {
     const World& world_;
     Viewer& viewer_;
     const PixelFilter& filter_;
+    const Progress& progress_;
     SampleGrid grid_;  // in lattice order
     SampleViews centres_;
     std::vector<std::size_t> first_;  // per pixel of the grid, and one more: in fragments_
