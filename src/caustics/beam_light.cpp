@@ -185,8 +185,8 @@ Vec3 BeamLight::irradiance(const Receiver& receiver) const {
 
 namespace {
 
-/// Exact arrivals whose rays leave the light so near to each other are one, whichever window they come
-/// through: a share of the scene's size, and an angle.
+/// Exact arrivals that leave the last optic so near to each other, as a share of the scene's size, are one,
+/// whichever window they come through: from there the way back to the light is one.
 constexpr double kSameArrival = 1e-7;
 /// How near an exact path comes to its point, as a share of the scene's size.
 constexpr double kExact = 1e-11;
@@ -194,9 +194,7 @@ constexpr double kExact = 1e-11;
 bool is_known(const std::vector<ExactArrival>& known, const ExactArrival& one, double size) {
     const auto is_same = [&](const ExactArrival& other) {
         return other.single.path.history() == one.single.path.history() &&
-               length(other.from.origin - one.from.origin) < kSameArrival * size &&
-               length(normalize_or_zero(other.from.direction) - normalize_or_zero(one.from.direction)) <
-                   kSameArrival;
+               length(other.single.path.ray.origin - one.single.path.ray.origin) < kSameArrival * size;
     };
     return std::any_of(known.begin(), known.end(), is_same);
 }

@@ -17,12 +17,14 @@ ReceiverPlane unit_plane() {
     return ReceiverPlane(receiver, 10);
 }
 
-/// Light at the footprint, summed over `pieces` of a beam, each with what its middle there has.
+/// Light at the footprint, summed over the pieces of a beam that come to it, each with what its middle there
+/// has.
 struct Gathered {
     double light = 0;
-    std::size_t pieces = 0;
+    std::size_t looked_at = 0, pieces = 0;
 
     void add(const FallenBeam& fallen, const ReceiverPlane& plane) {
+        ++looked_at;
         const auto part = part_at_footprint(fallen, plane);
         if (!part) return;
         ++pieces;
@@ -56,7 +58,7 @@ TEST_CASE("pieces of a curved beam that are left out bring nothing to a footprin
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> exponent(-2, 2);
-    std::size_t met = 0, missed = 0;
+    std::size_t met = 0, missed = 0, looked_at = 0, pieces = 0;
     for (int i = 0; i < 30'000; ++i) {
         // Long and short, straight and folded, and of no area.
         const double size = std::pow(10, exponent(random)),
@@ -81,9 +83,12 @@ TEST_CASE("pieces of a curved beam that are left out bring nothing to a footprin
             });
             INFO("beam " << i << " in " << sides << " x " << sides << " pieces, " << every.pieces);
             CHECK(near.light == Approx(every.light).epsilon(1e-12).margin(1e-13));
+            CHECK(near.pieces == every.pieces);
             ++(every.pieces > 0 ? met : missed);
+            looked_at += near.looked_at, pieces += near.pieces;
         }
     }
     CHECK(met > 20'000);
     CHECK(missed > 10'000);
+    CHECK(looked_at < pieces + pieces / 10);  // hardly any piece is looked at in vain
 }

@@ -82,3 +82,24 @@ TEST_CASE("light that a ball of glass sends along a floor is as Snell and Fresne
     }
     CHECK(brightest > 10 * faintest);
 }
+
+TEST_CASE("where all of a beam's light comes it is the same as by a look at each way",
+          "[laws][law][caustics]") {
+    const LitWorld lit(lit_world(R"({"name": "ball", "role": "optic", "material": "glass", "resolution": 8,
+        "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
+                                 kLamp));
+    int lit_places = 0;
+    for (double z = -5.4; z < 1; z += 0.2)
+        for (const double x : {0.0, 0.3, -1.1}) {
+            Receiver plain = on_floor(x, z);
+            plain.sides = {Vec3(0.02, 0, 0), Vec3(0, 0, 0.02)};
+            // A normal that is not quite the plane's asks for each direction.
+            Receiver turned = plain;
+            turned.shading_normal = normalize_or_zero(Vec3(1e-10, 1, 0));
+            const Vec3 light = lit.light().irradiance(plain), by_ways = lit.light().irradiance(turned);
+            CAPTURE(x, z, light.y);
+            for (int c = 0; c < 3; ++c) CHECK(light[c] == Approx(by_ways[c]).epsilon(1e-8).margin(1e-12));
+            lit_places += light.y > 0;
+        }
+    CHECK(lit_places > 30);
+}
