@@ -5,10 +5,10 @@
 #include "base/util/overwritten.h"
 #include "support/test.h"
 
-#ifdef __SANITIZE_ADDRESS__  // GCC's
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // GCC's
 #define TRILENS_SANITIZED
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)  // Clang's
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)  // Clang's
 #define TRILENS_SANITIZED
 #endif
 #endif
@@ -23,7 +23,7 @@ TEST_CASE("overwritten room that finds no memory is empty, and may be asked agai
     room.resize(4);
     CHECK(room[3] == 7);
 #ifdef TRILENS_SANITIZED
-    TRILENS_SKIP("AddressSanitizer ends a program that asks for too much memory");
+    TRILENS_SKIP("a sanitizer ends a program that asks for too much memory");
 #endif
     CHECK_THROWS_AS(room.resize(PTRDIFF_MAX), std::bad_alloc);
     CHECK(room.size() == 0);
