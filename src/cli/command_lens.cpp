@@ -99,19 +99,48 @@ std::string seidel_text(const SeidelSums& seidel) {
     return text + terms_line("sum", seidel.sum, scale);
 }
 
-Answer run(const LensOptions& options, Console& console) {
-    console.files().reads({options.lens});
-    if (!options.glasses.empty()) console.files().reads({options.glasses});
-    const LensPrescription lens = load_lens(options.lens, options.glasses);
+void add_seidel(const LensPrescription& section, const LensOptions& options, double pupil, Answer& answer) {
+    const double slope = std::tan(options.field * std::numbers::pi / 180);
+    const SeidelSums seidel = seidel_sums(section, {pupil, slope});
+    Json& sums = answer.fields["seidel"];
+    sums = {{"pupil_radius", pupil},
+            {"field_degrees", options.field},
+            {"image_slope", seidel.image_slope},
+            {"image_height", seidel.image_height},
+            {"sum", numbers_json(seidel.sum, kSeidelNumbers)},
+            {"surfaces", Json::array()}};
+    for (const SeidelTerms& row : seidel.rows) sums["surfaces"].push_back(numbers_json(row, kSeidelNumbers));
+    answer.text += seidel_text(seidel);
+}
+
+/// `height`: of its centroid, in the section.
+void add_spot(const Spot& spot, double height, Answer& answer) {
+    answer.fields["spot"] = {{"rays", spot.points.size()},
+                             {"asked", spot.asked},
+                             {"centroid", {spot.centroid.x, spot.centroid.y}},
+                             {"rms_radius", spot.rms_radius},
+                             {"radius", spot.radius}};
+    answer.text += fmt::format("\nspot of {} of {} rays: rms radius {:.4g}, radius {:.4g}, at {:.6g}\n",
+                               spot.points.size(), spot.asked, spot.rms_radius, spot.radius, height);
+}
+
+void warn_of_section(const LensPrescription& lens, LensSection section, Console& console) {
     if (!is_centred(lens))
         console.warn("first order and Seidel's sums take its surfaces as if none were tilted or decentred");
-    const LensSection section = imaging_section(lens);
     if (section == LensSection::kX)
         console.warn(
             "along y it has no focal length: first order, Seidel's sums, the field and the pupil are "
             "those of its section along x");
     else if (!is_round(lens))
         console.warn("first order, Seidel's sums and the pupil are those of its section along y");
+}
+
+Answer run(const LensOptions& options, Console& console) {
+    console.files().reads({options.lens});
+    if (!options.glasses.empty()) console.files().reads({options.glasses});
+    const LensPrescription lens = load_lens(options.lens, options.glasses);
+    const LensSection section = imaging_section(lens);
+    warn_of_section(lens, section, console);
     const SpectralLine line = *find_named<SpectralLine>(options.line);
     const LensPrescription cut = section_of(lens, section);
     const FirstOrder first = first_order(cut, line);
@@ -122,27 +151,9 @@ Answer run(const LensOptions& options, Console& console) {
         console.warn("the stop has no aperture: give --pupil for aberrations and spots");
         return answer;
     }
-    const double slope = std::tan(options.field * std::numbers::pi / 180);
-    const SeidelSums seidel = seidel_sums(cut, {pupil, slope});
-    Json& sums = answer.fields["seidel"];
-    sums = {{"pupil_radius", pupil},
-            {"field_degrees", options.field},
-            {"image_slope", seidel.image_slope},
-            {"image_height", seidel.image_height},
-            {"sum", numbers_json(seidel.sum, kSeidelNumbers)},
-            {"surfaces", Json::array()}};
-    for (const SeidelTerms& row : seidel.rows) sums["surfaces"].push_back(numbers_json(row, kSeidelNumbers));
-    answer.text += seidel_text(seidel);
-
+    add_seidel(cut, options, pupil, answer);
     const Spot spot = spot_of(lens, {pupil, options.field, line, options.rings, options.shift});
-    answer.fields["spot"] = {{"rays", spot.points.size()},
-                             {"asked", spot.asked},
-                             {"centroid", {spot.centroid.x, spot.centroid.y}},
-                             {"rms_radius", spot.rms_radius},
-                             {"radius", spot.radius}};
-    answer.text += fmt::format("\nspot of {} of {} rays: rms radius {:.4g}, radius {:.4g}, at {:.6g}\n",
-                               spot.points.size(), spot.asked, spot.rms_radius, spot.radius,
-                               section == LensSection::kX ? spot.centroid.x : spot.centroid.y);
+    add_spot(spot, section == LensSection::kX ? spot.centroid.x : spot.centroid.y, answer);
     if (options.output.empty()) return answer;
     std::string table = "x,y\n";
     for (const Vec2& p : spot.points) table += fmt::format("{},{}\n", p.x, p.y);

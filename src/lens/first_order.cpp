@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "base/util/error.h"
@@ -65,13 +66,12 @@ std::vector<ParaxialPlace> paraxial_ray(const LensPrescription& lens, const Para
 
 namespace {
 
-/// Whether a ray along the axis leaves along another way. Its slope behind, times the index there, is the sum
-/// of what each surface bends it by: where these cancel, rounding is left.
-bool gathers(const LensPrescription& lens, SpectralLine line) {
+/// Whether `ray`, which comes along the axis, leaves along another way. Its slope behind, times the index
+/// there, is the sum of what each surface bends it by: where these cancel, rounding is left.
+bool gathers(const LensPrescription& lens, std::span<const ParaxialPlace> ray, SpectralLine line) {
     constexpr double kRounding = 1e-12;
-    if (lens.rows.empty()) return false;
+    if (ray.empty()) return false;
     const std::vector<double> index = signed_indices(lens_media(lens), line);
-    const std::vector<ParaxialPlace> ray = paraxial_ray(lens, {1, 0}, line);
     double bent = 0;
     for (std::size_t i = 0; i < ray.size(); ++i)
         bent += std::fabs(ray[i].height * vertex_curvature(lens.rows[i].side) * (index[i + 1] - index[i]));
@@ -82,7 +82,8 @@ bool gathers(const LensPrescription& lens, SpectralLine line) {
 
 LensSection imaging_section(const LensPrescription& lens) {
     const auto gathers_along = [&](LensSection section) {
-        return gathers(section_of(lens, section), SpectralLine::kD);
+        const LensPrescription cut = section_of(lens, section);
+        return gathers(cut, paraxial_ray(cut, {1, 0}), SpectralLine::kD);
     };
     return !gathers_along(LensSection::kY) && gathers_along(LensSection::kX) ? LensSection::kX
                                                                              : LensSection::kY;
@@ -97,7 +98,7 @@ FirstOrder first_order(const LensPrescription& lens, SpectralLine line) {
     for (const double number : {a.height, a.slope, b.height, b.slope})
         if (!std::isfinite(number))
             throw InputError(lens.file, "", "is bent so strongly that its rays are no numbers");
-    if (!gathers(lens, line))
+    if (!gathers(lens, parallel, line))
         throw InputError(lens.file, "",
                          std::string("has no focal length") + (is_round(lens) ? "" : " along y") +
                              ": rays along the axis leave along the axis");

@@ -22,10 +22,6 @@ constexpr std::string_view kSurfaceWords[] = {"RDY", "CUY", "THI", "GLA", "RMD",
 /// What an anamorphic asphere has beyond its two conic sections.
 constexpr std::string_view kAnamorphicTerms[] = {"AR", "BR", "CR", "DR", "AP", "BP", "CP", "DP"};
 
-/// What has one number, and says something of a surface' form.
-constexpr std::string_view kFormNumbers[] = {"K", "RDX", "CUX", "KX", "KY", "A",
-                                             "B", "C",   "D",   "E",  "F",  "G"};
-
 /// Commands of surfaces of other kinds, that neither refract nor reflect, or whose tilts are not
 /// about their own vertex.
 constexpr std::string_view kRefused[] = {"REFL", "GRT", "HOE", "DIF", "NSS", "REX", "REY", "ELX", "ELY",
@@ -239,7 +235,7 @@ class SequenceReader : LensLines {
             row.stop = true;
         else if (key == "SCO")
             take_coefficient(words);
-        else if (is_among(kFormNumbers, key))
+        else if (CodeVForm::has_number(key))
             forms_.back().take_number(key, {number(words, 1), place()});
         else if ((key == "H" || key == "J") && number(words, 1) != 0)
             fail(key + " is beyond r^16");

@@ -25,6 +25,7 @@ SideForm form_of(const std::string& name) {
 
 /// Conicoid and asphere: what A, B, ... multiply is r^4, r^6, ...
 constexpr std::string_view kTerms = "ABCDEFG";
+constexpr std::string_view kNumbers[] = {"RDX", "CUX", "K", "KX", "KY"};
 
 bool is_q_type(const std::string& form) {
     return form == "SPS QBF" || form == "SPS QCN";
@@ -56,6 +57,11 @@ bool CodeVForm::take_form(const std::string& name, const std::string& file, cons
     return true;
 }
 
+bool CodeVForm::has_number(std::string_view key) {
+    return std::find(std::begin(kNumbers), std::end(kNumbers), key) != std::end(kNumbers) ||
+           (key.size() == 1 && kTerms.find(key[0]) != std::string_view::npos);
+}
+
 void CodeVForm::take_number(const std::string& key, const PlacedNumber& number) {
     if (key == "RDX" || key == "CUX") {
         const bool is_radius = key == "RDX" && number.value != 0;
@@ -74,7 +80,7 @@ void CodeVForm::take_coefficient(const std::string& name, const PlacedNumber& nu
     const auto fail = [&](const std::string& why) {
         throw InputError(file, number.place, "SCO " + name + " " + why);
     };
-    if (!is_q_type(name_)) fail("before its surface' form: it is read of Q-type ones (SPS QBF, SPS QCN)");
+    if (!is_q_type(name_)) fail("before its surface's form: it is read of Q-type ones (SPS QBF, SPS QCN)");
     const int index = coefficient_of(name, name_);
     if (index == 0) fail("is not read: C1 is the normalization radius, from C3 on are the terms");
     if (number.value == 0) {

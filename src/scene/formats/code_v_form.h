@@ -26,7 +26,9 @@ class CodeVForm {
     /// has one form.
     bool take_form(const std::string& name, const std::string& file, const std::string& place);
 
-    /// RDX, CUX, K, KX, KY and A to G; the last number of each counts.
+    /// Whether take_number() takes the command: RDX, CUX, K, KX, KY and A to G.
+    static bool has_number(std::string_view key);
+    /// The last number of each counts.
     void take_number(const std::string& key, const PlacedNumber& number);
 
     /// SCO: "C1", "C3", ..., or NRADIUS, QB4, QB6, ... as CODE V lists them; the last number of each counts.
