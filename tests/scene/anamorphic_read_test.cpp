@@ -191,7 +191,7 @@ TEST_CASE("Q-type aspheres of CODE V are those of the polynomials", "[scene][len
           "a.seq: line 5: SCO C2 of a Q-type surface is not known: conic constants are read from K");
     CHECK(refused("SPS QBF\nSCO C10 0.02") == "a.seq: line 5: SCO C10 is beyond r^16");
     CHECK(refused("SPS QBF\nA 1e-6") == "a.seq: line 5: A to G are not of a Q-type surface (SPS QBF)");
-    CHECK(refused("SCO C3 0.02\nSPS QBF").starts_with("a.seq: line 4: SCO C3 before its surface' form"));
+    CHECK(refused("SCO C3 0.02\nSPS QBF").starts_with("a.seq: line 4: SCO C3 before its surface's form"));
     for (const std::string name : {"C0", "C-3", "CX", "QB5", "QC4", "QB2"}) {
         CAPTURE(name);
         CHECK(refused("SPS QBF\nSCO " + name + " 1") ==
