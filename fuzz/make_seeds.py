@@ -51,6 +51,13 @@ def scenes():
     glass["render"] = {"maxDepth": 2, "maxError": 0.5, "paths": ["direct", "refract"]}
     glass["cameras"].append({"name": "fish", "type": "fisheye", "fov": 180, "mapping": "equisolid", "lookAt": CAMERA["lookAt"]})
     write("scene", "glass", text(glass))
+    far = {"position": [0, 2, 0], "direction": [0, -1, 0]}
+    for name, light in (("rectangle", {"type": "rectangle", "size": [1, 0], **far}), ("disk", {"type": "disk", "radius": 0, **far}),
+                        ("sphere", {"type": "sphere", "position": [0, 2, 0], "radius": 0}),
+                        ("tiny-rectangle", {"type": "rectangle", "size": [1e-200, 1e-200], **far})):
+        write("scene", f"refused-{name}-of-no-area", text(dict(SMALL, lights=[light])))
+    sky = {"zenith": [0.2, 0.4, 0.8], "horizon": [0.8, 0.8, 0.9], "ground": [0.2, 0.2, 0.1]}
+    write("scene", "sky", text(dict(SMALL, background=sky, lights=[{"type": "environment", "samples": 8, "shadows": True}])))
     moving = dict(SMALL, animation={"fps": 24, "tracks": [
         {"target": "/meshes/0/primitive/radius", "keys": [{"frame": 0, "value": 1}, {"frame": 8, "value": 0.5}]},
         {"target": "/cameras/0/yfov", "keys": [{"frame": 0, "value": 30}, {"frame": 4, "value": 60}], "interpolation": "smooth"}]})
@@ -199,6 +206,30 @@ t interpolateboundary 1/0/0 2
           + struct.pack("<I", len(document)) + b"JSON" + document + struct.pack("<I", len(data)) + b"BIN\0" + data)
     gltf["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
     write("gltf", "room.gltf", text(gltf))
+    bad_models(gltf, data)
+
+
+def bad_models(gltf, data):
+    """The room, each with one thing that must be refused; tests/fuzz/replay_test.cpp has the reasons."""
+    def refused(name, change):
+        room = json.loads(text(gltf))
+        change(room)
+        write("gltf", f"refused-{name}.gltf", text(room))
+
+    def embedded(content, **more):
+        return {"uri": "data:application/octet-stream;base64," + base64.b64encode(content).decode(), "byteLength": len(content)} | more
+
+    none = struct.pack("<f", float("nan"))
+    short = gltf["buffers"][0]["uri"]
+    refused("buffer-too-short", lambda room: room["buffers"][0].update(byteLength=len(data) + 4))
+    refused("buffer-missing", lambda room: room["buffers"][0].update(uri="none.bin"))
+    refused("not-base64", lambda room: room["buffers"][0].update(uri=short.replace(";base64,", ",")))
+    refused("view-beyond-buffer", lambda room: room["bufferViews"][3].update(byteLength=4096))
+    refused("nan-in-animation", lambda room: room["buffers"].__setitem__(0, embedded(data[:-4] + none)))
+    refused("nan-in-times", lambda room: room["buffers"].__setitem__(0, embedded(data[:64] + none + data[68:])))
+    refused("cyclic-nodes", lambda room: room["nodes"][1].update(children=[0]))
+    refused("two-parents", lambda room: room["nodes"][3].update(children=[1]))
+    refused("unknown-extension", lambda room: room.update(extensionsRequired=["EXT_of_tomorrow"]))
 
 
 def exr(channels, zipped):

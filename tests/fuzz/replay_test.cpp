@@ -1,8 +1,11 @@
 // Every seed of the fuzzers, and what once broke, through its target: any compiler's test of what fuzzers
 // found.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include "fuzz/target.h"
 #include "support/test.h"
@@ -15,6 +18,29 @@ namespace {
 std::string bytes_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A seed that must be refused, and a part of what is said of it.
+struct Refused {
+    std::string target, name, reason;
+};
+
+const std::vector<Refused>& refused_seeds() {
+    static const std::vector<Refused> seeds{
+        {"gltf", "refused-buffer-missing.gltf", "/buffers/0/uri: the buffer 'none.bin' cannot be read"},
+        {"gltf", "refused-buffer-too-short.gltf", "/buffers/0/byteLength: is 96, but the buffer holds 92 bytes"},
+        {"gltf", "refused-cyclic-nodes.gltf", "/nodes/0: is its own ancestor"},
+        {"gltf", "refused-nan-in-animation.gltf", "/accessors/3: entry 1 holds a number that is not finite"},
+        {"gltf", "refused-nan-in-times.gltf", "/accessors/2: entry 1 holds a number that is not finite"},
+        {"gltf", "refused-not-base64.gltf", "/buffers/0/uri: a data URI without ';base64,' is not read"},
+        {"gltf", "refused-two-parents.gltf", "/nodes/1: is a child of node 0 and of node 3"},
+        {"gltf", "refused-unknown-extension.gltf", "the extension 'EXT_of_tomorrow' is required"},
+        {"gltf", "refused-view-beyond-buffer.gltf", "/accessors/3: its buffer view reaches beyond its buffer"},
+        {"scene", "refused-disk-of-no-area", "/lights/0/radius: 0 is out of range"},
+        {"scene", "refused-rectangle-of-no-area", "/lights/0/size/1: 0 is out of range"},
+        {"scene", "refused-sphere-of-no-area", "/lights/0/radius: 0 is out of range"},
+        {"scene", "refused-tiny-rectangle-of-no-area", "/lights/0/size: has no area"}};
+    return seeds;
 }
 
 struct Counts {
@@ -57,4 +83,31 @@ TEST_CASE("what strangers wrote is read or refused, never more", "[fuzz][bad-inp
         CHECK(counts.taken > 0);
         CHECK((target.makes || counts.refused > 0));
     }
+}
+
+TEST_CASE("seeds that are to be refused are refused for what is wrong with them, the others are taken",
+          "[fuzz][bad-input]") {
+    std::size_t met = 0;
+    for (const FuzzTarget& target : fuzz_targets())
+        for (const auto& entry :
+             fs::directory_iterator(fs::path(trilens_test::source_dir()) / "fuzz/seeds" / target.name)) {
+            const std::string name = entry.path().filename().string();
+            if (target.makes || name.starts_with("found-")) continue;
+            INFO(target.name << ": " << name);
+            const Answer answer = target.run(bytes_of(entry.path()));
+            if (!name.starts_with("refused-")) {
+                CHECK(answer == Answer::kTaken);
+                continue;
+            }
+            ++met;
+            REQUIRE(answer == Answer::kRefused);
+            const auto of_seed = [&](const Refused& one) {
+                return one.target == target.name && one.name == name;
+            };
+            const auto seed = std::find_if(refused_seeds().begin(), refused_seeds().end(), of_seed);
+            REQUIRE(seed != refused_seeds().end());
+            INFO(last_refusal());
+            CHECK(last_refusal().find(seed->reason) != std::string::npos);
+        }
+    CHECK(met == refused_seeds().size());
 }

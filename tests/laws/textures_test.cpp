@@ -1,6 +1,7 @@
 // Filtered textures in whole pictures: a ramp, a zone plate and a checkerboard that runs to the horizon, seen
 // directly, in a mirror sphere and through a ball of glass, against many samples per pixel.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "laws/agreement.h"
@@ -142,4 +143,42 @@ TEST_CASE("differentials of facets in closed form are those of their rays, and t
     INFO("median " << unlike[unlike.size() / 2] << ", 90 % " << unlike[unlike.size() * 9 / 10]);
     CHECK(unlike[unlike.size() / 2] < 0.02);
     CHECK(unlike[unlike.size() * 9 / 10] < 0.1);
+}
+
+TEST_CASE("a sky without a file has its formula's colour in every direction, and lights a floor by its integral",
+          "[laws][law][textures]") {
+    const std::string sky =
+        R"("background": {"zenith": [0.1, 0.2, 0.9], "horizon": [0.7, 0.8, 0.6], "ground": [0.3, 0.2, 0.1]})";
+    const Vec3 zenith(0.1, 0.2, 0.9), horizon(0.7, 0.8, 0.6), ground(0.3, 0.2, 0.1);
+    const auto channel = [](const Image& image, int c, int at) {
+        return double{image.find(std::array{"R", "G", "B"}[static_cast<std::size_t>(c)])
+                          ->floats()[static_cast<std::size_t>(at)]};
+    };
+
+    constexpr int kWidth = 16, kHeight = 90;  // rows of two degrees, no middle of one at the horizon
+    const auto around = world_from("sky", R"({"version": 1, "film": {"width": 16, "height": 90},
+        "cameras": [{"type": "spherical", "lookAt": {"eye": [0, 0, 0], "at": [0, 0, -1]}}], )" + sky + "}",
+                                   1);
+    const Image seen = drawn_by(*around, 1, Engine::kLimitTruth);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; x += 5) {
+            const double height = std::cos(3.14159265358979 * (y + 0.5) / kHeight);
+            const Vec3 formula = height > 0 ? (1 - height) * horizon + height * zenith : ground;
+            for (int c = 0; c < 3; ++c) {
+                INFO("row " << y << ", channel " << c);
+                CHECK(channel(seen, c, y * kWidth + x) ==
+                      Approx(formula[c]).margin(y == 44 || y == 45 ? 0.2 : 2e-3));
+            }
+        }
+
+    // The mean of a sky over a level floor, weighted with the cosine, which is the height itself.
+    const auto lit = world_from("floor", R"({"version": 1, "film": {"width": 2, "height": 2},
+        "cameras": [{"type": "orthographic", "ymag": 1, "lookAt": {"eye": [0, 5, 0], "at": [0, 0, 0], "up": [0, 0, -1]}}],
+        "materials": [{"name": "white"}], "lights": [{"type": "environment", "samples": 256}],
+        "meshes": [{"name": "floor", "role": "object", "material": "white", "primitive": {"type": "plane", "size": [4, 4]}}],
+        )" + sky + "}",
+                                1);
+    const Image floor = drawn_by(*lit, 1, Engine::kLimitTruth);
+    const Vec3 closed = horizon + 2.0 / 3 * (zenith - horizon);
+    for (int c = 0; c < 3; ++c) CHECK(channel(floor, c, 0) == Approx(closed[c]).epsilon(0.01));
 }

@@ -51,8 +51,7 @@ const char* const kCamerasExample = R"json({
     { "name": "red", "baseColorFactor": [0.65, 0.09, 0.06] },
     { "name": "teal", "baseColorFactor": [0.05, 0.4, 0.42] },
     { "name": "yellow", "baseColorFactor": [0.9, 0.6, 0.08] },
-    { "name": "blue", "baseColorFactor": [0.1, 0.22, 0.62] },
-    { "name": "lamp", "baseColorFactor": [1, 0.97, 0.88], "unlit": true }
+    { "name": "blue", "baseColorFactor": [0.1, 0.22, 0.62] }
   ],
   "meshes": [
     { "name": "ball", "role": "optic", "material": "chrome", "resolution": 16,
@@ -75,13 +74,12 @@ const char* const kCamerasExample = R"json({
       "faceVertexCounts": [3,3,3,3], "faceVertexIndices": [1,0,4, 2,1,4, 3,2,4, 0,3,4] },
     { "name": "box", "role": "object", "material": "blue", "transform": { "translate": [1.65, 0, 0.5] },
       "points": [[-0.4,0,-0.3],[0.3,0,-0.4],[0.4,0,0.3],[-0.3,0,0.4], [-0.4,0.8,-0.3],[0.3,0.8,-0.4],[0.4,0.8,0.3],[-0.3,0.8,0.4]],
-      "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] },
-    { "name": "window", "role": "object", "material": "lamp",
-      "points": [[-1.2,3.9995,0],[1.2,3.9995,0],[1.2,3.9995,2],[-1.2,3.9995,2]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] }
+      "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] }
   ],
   "lights": [
-    { "type": "point", "position": [0, 3.7, 1], "intensity": 26, "color": [1, 0.95, 0.85], "shadows": true },
-    { "type": "ambient", "color": [0.16, 0.17, 0.2] }
+    { "type": "rectangle", "name": "window", "position": [0, 3.9995, 1], "direction": [0, -1, 0], "size": [2.4, 2], "intensity": 7.5, "color": [1, 0.95, 0.85],
+      "samples": 16, "shadows": true },
+    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 24, "shadows": true }
   ]
 }
 )json";
@@ -98,7 +96,7 @@ const char* const kCausticExample = R"json({
     { "name": "above", "yfov": 30, "lookAt": { "eye": [0, 4.6, 2], "at": [0, 0.2, 0.06] } },
     { "name": "source", "type": "orthographic", "ymag": 0.45, "lookAt": { "eye": [0, 0.6, 0], "at": [0, 0.1, -0.8660254037844386] } }
   ],
-  "background": { "color": [0.45, 0.57, 0.75] },
+  "background": { "zenith": [0.16, 0.34, 0.72], "horizon": [0.72, 0.8, 0.9], "ground": [0.6, 0.64, 0.7] },
   "materials": [
     { "name": "chrome", "baseColorFactor": [0.9, 0.88, 0.84], "metallicFactor": 1 },
     { "name": "oak", "baseColorFactor": [0.36, 0.2, 0.09] },
@@ -209,8 +207,8 @@ const char* const kCausticExample = R"json({
                             178,177,176] }
   ],
   "lights": [
-    { "type": "directional", "direction": [-0.4, -1, -0.6], "intensity": 2 },
-    { "type": "ambient", "color": [0.35, 0.35, 0.37] }
+    { "type": "directional", "direction": [-0.4, -1, -0.6], "angle": 3, "samples": 9, "intensity": 2.2, "color": [1, 0.95, 0.88], "shadows": true },
+    { "type": "environment", "intensity": 1, "samples": 24, "shadows": true }
   ],
   "render": { "maxDepth": 2 }
 }

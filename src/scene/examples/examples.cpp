@@ -7,8 +7,9 @@ namespace trilens {
 namespace {
 
 constexpr const char* kMirrorSphere = R"json({
-  // The first scene to try: an exact mirror sphere in a painted room, lit by one lamp. Everything it shows lies
-  // in this file; the front wall is behind the camera.
+  // The first scene to try: an exact mirror sphere in a painted room, lit by a window in its ceiling and, less where
+  // things are near one another, by the room itself. Everything it shows lies in this file; the front wall is behind
+  // the camera. Draw it with --tone neutral: the window is brighter than white.
   "version": 1,
   "film": { "width": 640, "height": 480, "spp": 4 },
   "cameras": [ { "name": "main", "yfov": 42, "lookAt": { "eye": [0.6, 1.8, 4.7], "at": [-0.1, 1, 0] } } ],
@@ -19,8 +20,7 @@ constexpr const char* kMirrorSphere = R"json({
     { "name": "red", "baseColorFactor": [0.65, 0.09, 0.06] },
     { "name": "teal", "baseColorFactor": [0.05, 0.4, 0.42] },
     { "name": "yellow", "baseColorFactor": [0.9, 0.6, 0.08] },
-    { "name": "blue", "baseColorFactor": [0.1, 0.22, 0.62] },
-    { "name": "lamp", "baseColorFactor": [1, 0.97, 0.88], "unlit": true }
+    { "name": "blue", "baseColorFactor": [0.1, 0.22, 0.62] }
   ],
   "meshes": [
     { "name": "ball", "role": "optic", "material": "chrome", "resolution": 16,
@@ -43,34 +43,31 @@ constexpr const char* kMirrorSphere = R"json({
       "faceVertexCounts": [3,3,3,3], "faceVertexIndices": [1,0,4, 2,1,4, 3,2,4, 0,3,4] },
     { "name": "box", "role": "object", "material": "blue", "transform": { "translate": [1.65, 0, 0.5] },
       "points": [[-0.4,0,-0.3],[0.3,0,-0.4],[0.4,0,0.3],[-0.3,0,0.4], [-0.4,0.8,-0.3],[0.3,0.8,-0.4],[0.4,0.8,0.3],[-0.3,0.8,0.4]],
-      "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] },
-    { "name": "window", "role": "object", "material": "lamp",
-      "points": [[-1.2,3.9995,0],[1.2,3.9995,0],[1.2,3.9995,2],[-1.2,3.9995,2]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] }
+      "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] }
   ],
   "lights": [
-    { "type": "point", "position": [0, 3.7, 1], "intensity": 26, "color": [1, 0.95, 0.85], "shadows": true },
-    { "type": "ambient", "color": [0.16, 0.17, 0.2] }
+    { "type": "rectangle", "name": "window", "position": [0, 3.9995, 1], "direction": [0, -1, 0], "size": [2.4, 2], "intensity": 7.5, "color": [1, 0.95, 0.85],
+      "samples": 16, "shadows": true },
+    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 24, "shadows": true }
   ]
 }
 )json";
 
 constexpr const char* kCreasedCage = R"json({
   // Creases: a gold cup with its lid, one Catmull-Clark cage of 128 points. The plinth's edges and corners are sharp, the lip
-  // and the lid's foot are semi-sharp (they round off at the sharpness that is given), all else is smooth.
+  // and the lid's foot are semi-sharp (they round off at the sharpness that is given), all else is smooth. A soft box and the sky light it: a picture wants a tone curve, --tone neutral.
   "version": 1,
   "film": { "width": 640, "height": 480, "spp": 4 },
   "cameras": [
     { "name": "main", "yfov": 30, "lookAt": { "eye": [2.2, 2.9, 7.4], "at": [0, 1.5, 0] } }
   ],
-  "background": { "color": [0.5, 0.58, 0.7] },
+  "background": { "zenith": [0.2, 0.32, 0.55], "horizon": [0.68, 0.72, 0.77], "ground": [0.55, 0.57, 0.6] },
   "materials": [
     { "name": "gold", "baseColorFactor": [1, 0.77, 0.34], "metallicFactor": 1 },
-    { "name": "marble", "baseColorFactor": [0.72, 0.7, 0.66] },
-    { "name": "slate", "baseColorFactor": [0.07, 0.09, 0.13] },
+    { "name": "floor", "baseColorTexture": { "pattern": "checker", "count": [60, 60], "colors": [[0.74, 0.71, 0.65], [0.2, 0.22, 0.26]] } },
     { "name": "wine", "baseColorFactor": [0.5, 0.03, 0.07] },
     { "name": "teal", "baseColorFactor": [0.02, 0.3, 0.33] },
-    { "name": "wall", "baseColorFactor": [0.2, 0.27, 0.38] },
-    { "name": "lamp", "baseColorFactor": [1, 0.98, 0.94], "unlit": true }
+    { "name": "panel", "baseColorFactor": [1, 0.98, 0.94], "unlit": true }
   ],
   "meshes": [
     // Rings of eight points, from the plinth upwards; creases along rings, then the plinth's four uprights.
@@ -114,70 +111,28 @@ constexpr const char* kCreasedCage = R"json({
                         96,97,98,99,100,101,102,103,96,1,9,3,11,5,13,7,15],
       "creaseLengths": [9,9,9,9,9,9,2,2,2,2], "creaseSharpnesses": [10,10,4,3,4,1.5,10,10,10,10], "cornerIndices": [1,3,5,7,9,11,13,15],
       "cornerSharpnesses": [10,10,10,10,10,10,10,10] },
-    { "name": "floor", "role": "object", "material": "marble", "points": [[-9,0,-9],[9,0,-9],[9,0,9],[-9,0,9]], "faceVertexCounts": [4],
-      "faceVertexIndices": [3,2,1,0] },
-    { "name": "tiles", "role": "object", "material": "slate", "transform": { "translate": [0, 0.003, 0] },
-      "points": [[-9,0,-9],[-9,0,-7.5],[-7.5,0,-7.5],[-7.5,0,-9],[-9,0,-6],[-9,0,-4.5],[-7.5,0,-4.5],[-7.5,0,-6],[-9,0,-3],[-9,0,-1.5],
-                 [-7.5,0,-1.5],[-7.5,0,-3],[-9,0,0],[-9,0,1.5],[-7.5,0,1.5],[-7.5,0,0],[-9,0,3],[-9,0,4.5],[-7.5,0,4.5],[-7.5,0,3],[-9,0,6],
-                 [-9,0,7.5],[-7.5,0,7.5],[-7.5,0,6],[-7.5,0,-7.5],[-7.5,0,-6],[-6,0,-6],[-6,0,-7.5],[-7.5,0,-4.5],[-7.5,0,-3],[-6,0,-3],[-6,0,-4.5],
-                 [-7.5,0,-1.5],[-7.5,0,0],[-6,0,0],[-6,0,-1.5],[-7.5,0,1.5],[-7.5,0,3],[-6,0,3],[-6,0,1.5],[-7.5,0,4.5],[-7.5,0,6],[-6,0,6],
-                 [-6,0,4.5],[-7.5,0,7.5],[-7.5,0,9],[-6,0,9],[-6,0,7.5],[-6,0,-9],[-6,0,-7.5],[-4.5,0,-7.5],[-4.5,0,-9],[-6,0,-6],[-6,0,-4.5],
-                 [-4.5,0,-4.5],[-4.5,0,-6],[-6,0,-3],[-6,0,-1.5],[-4.5,0,-1.5],[-4.5,0,-3],[-6,0,0],[-6,0,1.5],[-4.5,0,1.5],[-4.5,0,0],[-6,0,3],
-                 [-6,0,4.5],[-4.5,0,4.5],[-4.5,0,3],[-6,0,6],[-6,0,7.5],[-4.5,0,7.5],[-4.5,0,6],[-4.5,0,-7.5],[-4.5,0,-6],[-3,0,-6],[-3,0,-7.5],
-                 [-4.5,0,-4.5],[-4.5,0,-3],[-3,0,-3],[-3,0,-4.5],[-4.5,0,-1.5],[-4.5,0,0],[-3,0,0],[-3,0,-1.5],[-4.5,0,1.5],[-4.5,0,3],[-3,0,3],
-                 [-3,0,1.5],[-4.5,0,4.5],[-4.5,0,6],[-3,0,6],[-3,0,4.5],[-4.5,0,7.5],[-4.5,0,9],[-3,0,9],[-3,0,7.5],[-3,0,-9],[-3,0,-7.5],
-                 [-1.5,0,-7.5],[-1.5,0,-9],[-3,0,-6],[-3,0,-4.5],[-1.5,0,-4.5],[-1.5,0,-6],[-3,0,-3],[-3,0,-1.5],[-1.5,0,-1.5],[-1.5,0,-3],[-3,0,0],
-                 [-3,0,1.5],[-1.5,0,1.5],[-1.5,0,0],[-3,0,3],[-3,0,4.5],[-1.5,0,4.5],[-1.5,0,3],[-3,0,6],[-3,0,7.5],[-1.5,0,7.5],[-1.5,0,6],
-                 [-1.5,0,-7.5],[-1.5,0,-6],[0,0,-6],[0,0,-7.5],[-1.5,0,-4.5],[-1.5,0,-3],[0,0,-3],[0,0,-4.5],[-1.5,0,-1.5],[-1.5,0,0],[0,0,0],
-                 [0,0,-1.5],[-1.5,0,1.5],[-1.5,0,3],[0,0,3],[0,0,1.5],[-1.5,0,4.5],[-1.5,0,6],[0,0,6],[0,0,4.5],[-1.5,0,7.5],[-1.5,0,9],[0,0,9],
-                 [0,0,7.5],[0,0,-9],[0,0,-7.5],[1.5,0,-7.5],[1.5,0,-9],[0,0,-6],[0,0,-4.5],[1.5,0,-4.5],[1.5,0,-6],[0,0,-3],[0,0,-1.5],[1.5,0,-1.5],
-                 [1.5,0,-3],[0,0,0],[0,0,1.5],[1.5,0,1.5],[1.5,0,0],[0,0,3],[0,0,4.5],[1.5,0,4.5],[1.5,0,3],[0,0,6],[0,0,7.5],[1.5,0,7.5],[1.5,0,6],
-                 [1.5,0,-7.5],[1.5,0,-6],[3,0,-6],[3,0,-7.5],[1.5,0,-4.5],[1.5,0,-3],[3,0,-3],[3,0,-4.5],[1.5,0,-1.5],[1.5,0,0],[3,0,0],[3,0,-1.5],
-                 [1.5,0,1.5],[1.5,0,3],[3,0,3],[3,0,1.5],[1.5,0,4.5],[1.5,0,6],[3,0,6],[3,0,4.5],[1.5,0,7.5],[1.5,0,9],[3,0,9],[3,0,7.5],[3,0,-9],
-                 [3,0,-7.5],[4.5,0,-7.5],[4.5,0,-9],[3,0,-6],[3,0,-4.5],[4.5,0,-4.5],[4.5,0,-6],[3,0,-3],[3,0,-1.5],[4.5,0,-1.5],[4.5,0,-3],[3,0,0],
-                 [3,0,1.5],[4.5,0,1.5],[4.5,0,0],[3,0,3],[3,0,4.5],[4.5,0,4.5],[4.5,0,3],[3,0,6],[3,0,7.5],[4.5,0,7.5],[4.5,0,6],[4.5,0,-7.5],
-                 [4.5,0,-6],[6,0,-6],[6,0,-7.5],[4.5,0,-4.5],[4.5,0,-3],[6,0,-3],[6,0,-4.5],[4.5,0,-1.5],[4.5,0,0],[6,0,0],[6,0,-1.5],[4.5,0,1.5],
-                 [4.5,0,3],[6,0,3],[6,0,1.5],[4.5,0,4.5],[4.5,0,6],[6,0,6],[6,0,4.5],[4.5,0,7.5],[4.5,0,9],[6,0,9],[6,0,7.5],[6,0,-9],[6,0,-7.5],
-                 [7.5,0,-7.5],[7.5,0,-9],[6,0,-6],[6,0,-4.5],[7.5,0,-4.5],[7.5,0,-6],[6,0,-3],[6,0,-1.5],[7.5,0,-1.5],[7.5,0,-3],[6,0,0],[6,0,1.5],
-                 [7.5,0,1.5],[7.5,0,0],[6,0,3],[6,0,4.5],[7.5,0,4.5],[7.5,0,3],[6,0,6],[6,0,7.5],[7.5,0,7.5],[7.5,0,6],[7.5,0,-7.5],[7.5,0,-6],
-                 [9,0,-6],[9,0,-7.5],[7.5,0,-4.5],[7.5,0,-3],[9,0,-3],[9,0,-4.5],[7.5,0,-1.5],[7.5,0,0],[9,0,0],[9,0,-1.5],[7.5,0,1.5],[7.5,0,3],
-                 [9,0,3],[9,0,1.5],[7.5,0,4.5],[7.5,0,6],[9,0,6],[9,0,4.5],[7.5,0,7.5],[7.5,0,9],[9,0,9],[9,0,7.5]],
-      "faceVertexCounts": [4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,
-                           4,4,4,4,4,4,4,4,4,4,4,4],
-      "faceVertexIndices": [0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33,34,35,36,37,38,39,40,41,42,
-                            43,44,45,46,47,48,49,50,51,52,53,54,55,56,57,58,59,60,61,62,63,64,65,66,67,68,69,70,71,72,73,74,75,76,77,78,79,80,81,82,
-                            83,84,85,86,87,88,89,90,91,92,93,94,95,96,97,98,99,100,101,102,103,104,105,106,107,108,109,110,111,112,113,114,115,116,
-                            117,118,119,120,121,122,123,124,125,126,127,128,129,130,131,132,133,134,135,136,137,138,139,140,141,142,143,144,145,146,
-                            147,148,149,150,151,152,153,154,155,156,157,158,159,160,161,162,163,164,165,166,167,168,169,170,171,172,173,174,175,176,
-                            177,178,179,180,181,182,183,184,185,186,187,188,189,190,191,192,193,194,195,196,197,198,199,200,201,202,203,204,205,206,
-                            207,208,209,210,211,212,213,214,215,216,217,218,219,220,221,222,223,224,225,226,227,228,229,230,231,232,233,234,235,236,
-                            237,238,239,240,241,242,243,244,245,246,247,248,249,250,251,252,253,254,255,256,257,258,259,260,261,262,263,264,265,266,
-                            267,268,269,270,271,272,273,274,275,276,277,278,279,280,281,282,283,284,285,286,287] },
-    { "name": "walls", "role": "object", "material": "wall", "points": [[-9,0,-9],[9,0,-9],[9,7,-9],[-9,7,-9],[9,0,9],[9,7,9],[-9,0,9],[-9,7,9]],
-      "faceVertexCounts": [4,4,4,4], "faceVertexIndices": [0,1,2,3,1,4,5,2,4,6,7,5,6,0,3,7] },
+    { "name": "floor", "role": "object", "material": "floor", "primitive": { "type": "plane", "size": [90, 90] } },
     { "name": "left ball", "role": "object", "material": "wine", "primitive": { "type": "sphere", "center": [-2.1, 0.55, -0.6], "radius": 0.55 } },
     { "name": "right ball", "role": "object", "material": "teal", "primitive": { "type": "sphere", "center": [2.3, 0.4, 0.9], "radius": 0.4 } },
-    // Two panels of light, left and right, and one above: what gold has to show.
-    { "name": "lamps", "role": "object", "material": "lamp",
-      "points": [[-6,0.4,1],[-6,6,1],[-4.5,6,6],[-4.5,0.4,6],[6,1,5],[6,5.5,5],[7.5,5.5,1.5],[7.5,1,1.5],[-2.5,7,-3],[2.5,7,-3],[2.5,7,2],
-                 [-2.5,7,2]],
-      "faceVertexCounts": [4,4,4], "faceVertexIndices": [0,1,2,3,4,5,6,7,8,9,10,11] }
+    // A white panel on the right: with the soft box on the left, what gold has to show.
+    { "name": "panel", "role": "object", "material": "panel", "points": [[6,1,5],[6,5.5,5],[7.5,5.5,1.5],[7.5,1,1.5]],
+      "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] }
   ],
   "lights": [
-    { "type": "point", "position": [-4.5, 5.5, 4.5], "intensity": 90, "color": [1, 0.95, 0.86], "shadows": true },
-    { "type": "point", "position": [5, 5, 4], "intensity": 30, "color": [0.8, 0.88, 1] },
-    { "type": "ambient", "color": [0.26, 0.27, 0.3] }
+    { "type": "rectangle", "name": "soft box", "position": [-5.25, 3.2, 3.5], "direction": [1, 0, -0.3], "size": [5.2, 5.6], "intensity": 4, "color": [1, 0.93, 0.82],
+      "samples": 16, "shadows": true },
+    { "type": "environment", "samples": 24, "shadows": true }
   ]
 }
 )json";
 
 constexpr const char* kWaterPatch = R"json({
   // A pool seen through its own surface: refraction by one wavy interface, with the reflection that Fresnel leaves to it.
-  // The pole stands straight; only water bends it.
+  // The pole stands straight; only water bends it. The sky lights the pool, and shows in it.
   "version": 1,
   "film": { "width": 640, "height": 480, "spp": 4 },
   "cameras": [ { "name": "main", "yfov": 38, "lookAt": { "eye": [0.6, 2.7, 4.9], "at": [0, -0.3, 0] } } ],
-  "background": { "color": [0.55, 0.72, 0.92] },
+  "background": { "zenith": [0.16, 0.34, 0.72], "horizon": [0.72, 0.8, 0.9], "ground": [0.6, 0.64, 0.7] },
   "materials": [
     { "name": "water", "transmissionFactor": 1, "ior": 1.333, "volume": { "attenuationColor": [0.45, 0.85, 0.92], "attenuationDistance": 2.5 } },
     { "name": "deck", "baseColorFactor": [0.72, 0.62, 0.48] },
@@ -213,21 +168,21 @@ constexpr const char* kWaterPatch = R"json({
       "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] }
   ],
   "lights": [
-    { "type": "directional", "direction": [0.5, -1, -0.35], "intensity": 2.6, "shadows": true },
-    { "type": "ambient", "color": [0.25, 0.27, 0.3] }
+    { "type": "directional", "direction": [0.5, -1, -0.35], "angle": 2, "samples": 9, "intensity": 2.1, "color": [1, 0.95, 0.86], "shadows": true },
+    { "type": "environment", "intensity": 0.9, "samples": 48, "shadows": true }
   ]
 }
 )json";
 
 constexpr const char* kMirrorCylinder = R"json({
   // Anamorphic art: what the sheet shows is stretched so that a mirror cylinder folds it back, for this camera, into a round
-  // ring with a heart in it. It teaches where to draw: each point lies where the mirrored ray of its place meets the sheet.
+  // ring with a heart in it. It teaches where to draw: each point lies where the mirrored ray of its place meets the sheet. A lamp 1.6 units wide makes its shadows soft.
   "version": 1,
   "film": { "width": 640, "height": 480, "spp": 4 },
   "cameras": [
     { "name": "main", "yfov": 37, "lookAt": { "eye": [0, 4.3, 5.6], "at": [0, 0.32, 0.9] } }
   ],
-  "background": { "color": [0.2, 0.17, 0.15] },
+  "background": { "zenith": [0.34, 0.34, 0.36], "horizon": [0.2, 0.17, 0.15], "ground": [0.1, 0.08, 0.07] },
   "materials": [
     { "name": "mirror", "baseColorFactor": [0.96, 0.96, 0.96], "metallicFactor": 1 },
     { "name": "red", "baseColorFactor": [0.72, 0.02, 0.06] },
@@ -298,19 +253,20 @@ constexpr const char* kMirrorCylinder = R"json({
                             40,47,46,45,44] }
   ],
   "lights": [
-    { "type": "point", "position": [-3.2, 4.8, 2.8], "intensity": 75, "color": [1, 0.93, 0.82], "shadows": true },
-    { "type": "ambient", "color": [0.26, 0.26, 0.29] }
+    { "type": "rectangle", "position": [-3.2, 4.8, 2.8], "direction": [3.2, -4.8, -1.8], "size": [1.6, 1.6], "intensity": 34, "color": [1, 0.93, 0.82],
+      "samples": 16, "shadows": true },
+    { "type": "environment", "samples": 24, "shadows": true }
   ]
 }
 )json";
 
 constexpr const char* kCrystalBall = R"json({
   // A body of glass: a crystal ball on a foot of brass. Light goes into the glass and out of it, so that what is behind
-  // hangs upside down in it.
+  // hangs upside down in it. A sun two degrees wide and a sky that needs no file light it.
   "version": 1,
   "film": { "width": 640, "height": 480, "spp": 4 },
   "cameras": [ { "name": "main", "yfov": 34, "lookAt": { "eye": [0.5, 1.9, 5.4], "at": [0, 1, 0] } } ],
-  "background": { "color": [0.55, 0.68, 0.85] },
+  "background": { "zenith": [0.16, 0.34, 0.72], "horizon": [0.72, 0.8, 0.9], "ground": [0.6, 0.64, 0.7] },
   "materials": [
     { "name": "crystal", "transmissionFactor": 1, "ior": 1.5, "volume": { "attenuationColor": [0.9, 0.96, 0.94], "attenuationDistance": 4 } },
     { "name": "marble", "baseColorFactor": [0.8, 0.79, 0.75] },
@@ -326,7 +282,7 @@ constexpr const char* kCrystalBall = R"json({
     { "name": "foot", "role": "object", "material": "brass",
       "primitive": { "type": "cylinder", "center": [0, 0.065, 0], "radius": 0.62, "height": 0.13, "segments": 96 } },
     { "name": "floor", "role": "object", "material": "marble",
-      "points": [[-6,0,-8],[6,0,-8],[6,0,8],[-6,0,8]], "faceVertexCounts": [4], "faceVertexIndices": [3,2,1,0] },
+      "points": [[-60,0,-60],[60,0,-60],[60,0,60],[-60,0,60]], "faceVertexCounts": [4], "faceVertexIndices": [3,2,1,0] },
     // Every other tile of those between the ball and the horizon, row by row.
     { "name": "tiles", "role": "object", "material": "slate", "transform": { "translate": [0, 0.002, 0] },
       "points": [[-4,0,-6],[-4,0,-5],[-3,0,-5],[-3,0,-6],[-2,0,-6],[-2,0,-5],[-1,0,-5],[-1,0,-6],[0,0,-6],[0,0,-5],
@@ -352,8 +308,8 @@ constexpr const char* kCrystalBall = R"json({
       "faceVertexCounts": [3,3,3,3], "faceVertexIndices": [1,0,4, 2,1,4, 3,2,4, 0,3,4] }
   ],
   "lights": [
-    { "type": "directional", "direction": [-0.5, -1, -0.6], "intensity": 2.2, "shadows": true },
-    { "type": "ambient", "color": [0.26, 0.27, 0.3] }
+    { "type": "directional", "direction": [-0.5, -1, -0.6], "angle": 2, "samples": 9, "intensity": 2, "color": [1, 0.95, 0.86], "shadows": true },
+    { "type": "environment", "intensity": 0.7, "samples": 24, "shadows": true }
   ]
 }
 )json";

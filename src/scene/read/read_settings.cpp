@@ -65,6 +65,32 @@ Film read_film(const Node& scene) {
     return film;
 }
 
+namespace {
+
+constexpr int kSkyColumns = 512, kSkyRows = 256;
+
+/// A sky that needs no file: from the horizon's colour to the zenith's with the height of the direction over the
+/// horizon, the sine of its elevation; one colour below.
+struct WrittenSky {
+    Vec3 zenith{0}, horizon{0}, ground{0};
+};
+
+std::shared_ptr<const Texture> draw_sky(const WrittenSky& sky) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = kSkyColumns;
+    texture->height = kSkyRows;
+    for (int y = 0; y < kSkyRows; ++y) {
+        const double height = std::cos(180 * kRadiansPerDegree * (y + 0.5) / kSkyRows);
+        const Vec3 color =
+            height > 0 ? sky.horizon + height * (sky.zenith - sky.horizon) : sky.ground;
+        for (int x = 0; x < kSkyColumns; ++x)
+            for (int c = 0; c < 3; ++c) texture->rgb.push_back(static_cast<float>(color[c]));
+    }
+    return texture;
+}
+
+}  // namespace
+
 const std::vector<Field<Background>>& background_fields() {
     static const std::vector<Field<Background>> fields = [] {
         Field<Background> rotate = part<Background>("rotate", ref("number"));
@@ -75,7 +101,13 @@ const std::vector<Field<Background>>& background_fields() {
             background.rotate_sin = std::sin(angle);
         };
         return std::vector<Field<Background>>{setting("color", &Background::color, ref("color")),
-                                              part<Background>("file", ref("name")), std::move(rotate)};
+                                              part<Background>("file", ref("name")),
+                                              std::move(rotate),
+                                              part<Background>("zenith", ref("color"),
+                                                               "Of a sky without a file: straight up."),
+                                              part<Background>("horizon", ref("color")),
+                                              part<Background>("ground", ref("color"),
+                                                               "Everywhere below the horizon.")};
     }();
     return fields;
 }
@@ -83,11 +115,21 @@ const std::vector<Field<Background>>& background_fields() {
 Json background_schema() {
     Json schema = object_schema(
         {.title = "a background",
-         .description = "A colour, or a latitude-longitude picture turned about +Y by 'rotate' degrees."},
+         .description =
+             "A colour; a latitude-longitude picture turned about +Y by 'rotate' degrees; or a sky, from "
+             "'horizon' to 'zenith' with the sine of the elevation, and 'ground' below."},
         background_fields());
     schema["dependencies"]["rotate"] = {"file"};
-    schema["if"]["required"] = {"file"};
-    schema["then"] = {{"title", "a background with a file"}, {"properties", {{"color", false}}}};
+    for (const char* one : {"zenith", "horizon", "ground"})
+        for (const char* other : {"zenith", "horizon", "ground"})
+            if (std::string(one) != other) schema["dependencies"][one].push_back(other);
+    const auto alone = [](const char* key, const char* title, std::vector<std::string> without) {
+        Json rule{{"if", {{"required", {key}}}}, {"then", {{"title", title}}}};
+        for (const std::string& other : without) rule["then"]["properties"][other] = false;
+        return rule;
+    };
+    schema["allOf"] = {alone("file", "a background with a file", {"color", "zenith"}),
+                       alone("zenith", "a background with a sky", {"color"})};
     return schema;
 }
 
@@ -97,6 +139,10 @@ Background read_background(const Node& scene, Reading& reading) {
     const Node node = scene["background"];
     read_fields(node, background_fields(), background);
     if (node.has("file")) background.environment = read_picture(reading, node["file"]);
+    if (node.has("zenith"))
+        background.environment = draw_sky({.zenith = to_vec3(node["zenith"].json),
+                                           .horizon = to_vec3(node["horizon"].json),
+                                           .ground = to_vec3(node["ground"].json)});
     return background;
 }
 
