@@ -3,8 +3,9 @@
 
     python3 bench/view.py BUILD FOLDER
 
-Each by a script, in memory and, where Xvfb is, in a window of OpenGL by software (llvmpipe) of 1280 x 800. Median, least and most
-of five runs; the seconds are those of the viewer's own --json. Writes FOLDER/table.md.
+The ball is lit by one sample of its window. Each by a script, in memory and, where Xvfb is, in a window of OpenGL by software
+(llvmpipe) of 1280 x 800. Median, least and most of five runs; the seconds are those of the viewer's own --json. Writes
+FOLDER/table.md.
 """
 import json
 import os
@@ -58,6 +59,8 @@ def main():
         ball = subprocess.run([build / "trilens", "scene", "example", "mirror-sphere"], check=True, capture_output=True, text=True).stdout
         ball = json.loads(re.sub(r"^\s*//.*$", "", ball, flags=re.M))
         ball["film"] = {"width": 640, "height": 480}
+        for light in ball["lights"]:  # one shadow ray a place
+            light.update(samples=1, shadows=light["type"] == "rectangle")
         (folder / "ball.json").write_text(json.dumps(ball))
         rows += rows_of(build, folder, NO_DISPLAY, "in memory")
         if shutil.which("Xvfb"):
