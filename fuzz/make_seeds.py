@@ -65,7 +65,7 @@ def scenes():
 
 
 def tables():
-    write("points", "plain", "# points\n0 0 1\n1.5,-2,3e-2\n\n-1, 0 , 4\n")
+    write("points", "plain", "# points\n0,0,1\n1.5,-2,3e-2\n\n-1, 0 , 4\n")
     write("points", "header", "x,y,z\n0,0,1\n")
     write("points", "colored", "0,0,1,0.5,0.25,1\n")
     head = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n" \
