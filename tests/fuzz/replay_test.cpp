@@ -28,14 +28,16 @@ struct Refused {
 const std::vector<Refused>& refused_seeds() {
     static const std::vector<Refused> seeds{
         {"gltf", "refused-buffer-missing.gltf", "/buffers/0/uri: the buffer 'none.bin' cannot be read"},
-        {"gltf", "refused-buffer-too-short.gltf", "/buffers/0/byteLength: is 96, but the buffer holds 92 bytes"},
+        {"gltf", "refused-buffer-too-short.gltf",
+         "/buffers/0/byteLength: is 96, but the buffer holds 92 bytes"},
         {"gltf", "refused-cyclic-nodes.gltf", "/nodes/0: is its own ancestor"},
         {"gltf", "refused-nan-in-animation.gltf", "/accessors/3: entry 1 holds a number that is not finite"},
         {"gltf", "refused-nan-in-times.gltf", "/accessors/2: entry 1 holds a number that is not finite"},
         {"gltf", "refused-not-base64.gltf", "/buffers/0/uri: a data URI without ';base64,' is not read"},
         {"gltf", "refused-two-parents.gltf", "/nodes/1: is a child of node 0 and of node 3"},
         {"gltf", "refused-unknown-extension.gltf", "the extension 'EXT_of_tomorrow' is required"},
-        {"gltf", "refused-view-beyond-buffer.gltf", "/accessors/3: its buffer view reaches beyond its buffer"},
+        {"gltf", "refused-view-beyond-buffer.gltf",
+         "/accessors/3: its buffer view reaches beyond its buffer"},
         {"scene", "refused-disk-of-no-area", "/lights/0/radius: 0 is out of range"},
         {"scene", "refused-rectangle-of-no-area", "/lights/0/size/1: 0 is out of range"},
         {"scene", "refused-sphere-of-no-area", "/lights/0/radius: 0 is out of range"},

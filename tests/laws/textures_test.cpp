@@ -145,8 +145,9 @@ TEST_CASE("differentials of facets in closed form are those of their rays, and t
     CHECK(unlike[unlike.size() * 9 / 10] < 0.1);
 }
 
-TEST_CASE("a sky without a file has its formula's colour in every direction, and lights a floor by its integral",
-          "[laws][law][textures]") {
+TEST_CASE(
+    "a sky without a file has its formula's colour in every direction, and lights a floor by its integral",
+    "[laws][law][textures]") {
     const std::string sky =
         R"("background": {"zenith": [0.1, 0.2, 0.9], "horizon": [0.7, 0.8, 0.6], "ground": [0.3, 0.2, 0.1]})";
     const Vec3 zenith(0.1, 0.2, 0.9), horizon(0.7, 0.8, 0.6), ground(0.3, 0.2, 0.1);
@@ -156,8 +157,10 @@ TEST_CASE("a sky without a file has its formula's colour in every direction, and
     };
 
     constexpr int kWidth = 16, kHeight = 90;  // rows of two degrees, no middle of one at the horizon
-    const auto around = world_from("sky", R"({"version": 1, "film": {"width": 16, "height": 90},
-        "cameras": [{"type": "spherical", "lookAt": {"eye": [0, 0, 0], "at": [0, 0, -1]}}], )" + sky + "}",
+    const auto around = world_from("sky",
+                                   R"({"version": 1, "film": {"width": 16, "height": 90},
+        "cameras": [{"type": "spherical", "lookAt": {"eye": [0, 0, 0], "at": [0, 0, -1]}}], )" +
+                                       sky + "}",
                                    1);
     const Image seen = drawn_by(*around, 1, Engine::kLimitTruth);
     for (int y = 0; y < kHeight; ++y)

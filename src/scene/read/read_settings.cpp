@@ -69,8 +69,8 @@ namespace {
 
 constexpr int kSkyColumns = 512, kSkyRows = 256;
 
-/// A sky that needs no file: from the horizon's colour to the zenith's with the height of the direction over the
-/// horizon, the sine of its elevation; one colour below.
+/// A sky that needs no file: from the horizon's colour to the zenith's with the height of the direction over
+/// the horizon, the sine of its elevation; one colour below.
 struct WrittenSky {
     Vec3 zenith{0}, horizon{0}, ground{0};
 };
@@ -81,8 +81,7 @@ std::shared_ptr<const Texture> draw_sky(const WrittenSky& sky) {
     texture->height = kSkyRows;
     for (int y = 0; y < kSkyRows; ++y) {
         const double height = std::cos(180 * kRadiansPerDegree * (y + 0.5) / kSkyRows);
-        const Vec3 color =
-            height > 0 ? sky.horizon + height * (sky.zenith - sky.horizon) : sky.ground;
+        const Vec3 color = height > 0 ? sky.horizon + height * (sky.zenith - sky.horizon) : sky.ground;
         for (int x = 0; x < kSkyColumns; ++x)
             for (int c = 0; c < 3; ++c) texture->rgb.push_back(static_cast<float>(color[c]));
     }
@@ -100,14 +99,13 @@ const std::vector<Field<Background>>& background_fields() {
             background.rotate_cos = std::cos(angle);
             background.rotate_sin = std::sin(angle);
         };
-        return std::vector<Field<Background>>{setting("color", &Background::color, ref("color")),
-                                              part<Background>("file", ref("name")),
-                                              std::move(rotate),
-                                              part<Background>("zenith", ref("color"),
-                                                               "Of a sky without a file: straight up."),
-                                              part<Background>("horizon", ref("color")),
-                                              part<Background>("ground", ref("color"),
-                                                               "Everywhere below the horizon.")};
+        return std::vector<Field<Background>>{
+            setting("color", &Background::color, ref("color")),
+            part<Background>("file", ref("name")),
+            std::move(rotate),
+            part<Background>("zenith", ref("color"), "Of a sky without a file: straight up."),
+            part<Background>("horizon", ref("color")),
+            part<Background>("ground", ref("color"), "Everywhere below the horizon.")};
     }();
     return fields;
 }
