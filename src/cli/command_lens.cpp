@@ -124,7 +124,9 @@ void add_spot(const Spot& spot, double height, Answer& answer) {
                                spot.points.size(), spot.asked, spot.rms_radius, spot.radius, height);
 }
 
-void warn_of_section(const LensPrescription& lens, LensSection section, Console& console) {
+void warn_of(const LensPrescription& lens, LensSection section, Console& console) {
+    for (const LensRow& row : lens.rows)
+        if (outreaches_terms(row.side)) console.warn(lens.file + ": " + row.place + ": " + kOutreachesTerms);
     if (!is_centred(lens))
         console.warn("first order and Seidel's sums take its surfaces as if none were tilted or decentred");
     if (section == LensSection::kX)
@@ -140,7 +142,7 @@ Answer run(const LensOptions& options, Console& console) {
     if (!options.glasses.empty()) console.files().reads({options.glasses});
     const LensPrescription lens = load_lens(options.lens, options.glasses);
     const LensSection section = imaging_section(lens);
-    warn_of_section(lens, section, console);
+    warn_of(lens, section, console);
     const SpectralLine line = *find_named<SpectralLine>(options.line);
     const LensPrescription cut = section_of(lens, section);
     const FirstOrder first = first_order(cut, line);

@@ -1,38 +1,18 @@
 // trilens view: starts the viewer, which is a program and a package of its own.
-#include <trilens/error.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/other_program.h"
 #include "cli/view_options.h"
 
 namespace trilens {
 namespace {
 
-constexpr const char* kViewerProgram = "trilens-view";
-
-/// Becomes the viewer, with the same words; beside this program, or where PATH has it. Throws
-/// ComputationError.
 Answer start_viewer(const ViewOptions&, Console& console) {
-    std::vector<std::string> words{kViewerProgram};
-    words.insert(words.end(), console.words().begin(), console.words().end());
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    std::error_code none;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", none);
-    if (!none) execv((self.parent_path() / kViewerProgram).c_str(), arguments.data());
-    execvp(kViewerProgram, arguments.data());
-    if (errno == ENOENT)
-        throw ComputationError(
-            "the viewer is not installed; it is a Debian package of its own, trilens-viewer, and is built "
-            "where "
-            "libglfw3-dev and libimgui-dev are");
-    throw ComputationError(std::string("the viewer trilens-view cannot be started: ") + std::strerror(errno));
+    become_program("trilens-view",
+                   "the viewer is not installed; it is a Debian package of its own, trilens-viewer, and is "
+                   "built where libglfw3-dev and libimgui-dev are",
+                   console);
 }
 
 }  // namespace

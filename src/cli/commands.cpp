@@ -23,7 +23,7 @@ Command make_commands() {
              compare_command(), sweep_command(), report_command(), test_command(), project_command(),
              shoot_command(), fit_command(), design_command(), unwrap_command(), map_command(),
              caustic_command(), bake_command(), anamorph_command(), view_command(), scene_command(),
-             lens_command(), info_command()})
+             lens_command(), cad_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;
@@ -136,6 +136,10 @@ std::vector<Example> examples_of(const std::string& called) {
         {"trilens scene example",
          {{"trilens scene example", "their names"},
           {"trilens scene example mirror-sphere > scene.json", "one of them, to start from"}}},
+        {"trilens cad",
+         {{"trilens cad mirror.step -o mirror.json", "its bodies as mirrors on a floor, in a scene"},
+          {"trilens cad mount.step --mirror 'M*' --glass 'lens*' -o mount.json",
+           "some bodies as mirrors and glass, the others as objects"}}},
         {"trilens lens",
          {{"trilens lens triplet.zmx --field 12", "focal length, pupils, Seidel sums, the spot"},
           {"trilens lens triplet.zmx --field 12 --line F --rings 20 -o spot.csv", "where blue rays fall"}}},

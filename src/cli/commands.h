@@ -28,6 +28,7 @@ Command scene_command();
 Command lens_command();
 Command info_command();
 Command view_command();  // starts the viewer, a program of its own
+Command cad_command();   // as well
 
 /// The whole program, each command with its examples.
 Command make_commands();

@@ -138,6 +138,16 @@ def test_a_lens_primitive_has_a_hole():
         trilens.primitive_surface("lens", hole=1)
 
 
+def test_terms_that_end_within_the_rim_are_warned_of(command, tmp_path):
+    file = tmp_path / "q.seq"
+    for radius, told in (7, 1), (8, 0):
+        file.write_text(
+            f"RDM\nSO 0 1E13\nS 60 4 NBK7\n CIR 8\n SPS QBF; SCO C1 {radius}; SCO C3 0.01\nS 0 90\n CIR 8\nSI 0 0\n"
+        )
+        _, answer = command("lens", file)
+        assert sum("line 3: its aperture is larger" in warning for warning in answer["warnings"]) == told
+
+
 def test_an_anamorphic_lens_has_two_focal_lengths(command, tmp_path):
     file = tmp_path / "cylinder.seq"
     file.write_text("RDM\nSO 0 1E13\nS 60 4 NBK7\n CIR 8\n YTO; RDX 30\nS 0 90\n CIR 8\nSI 0 0\n")

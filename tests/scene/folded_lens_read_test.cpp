@@ -265,6 +265,53 @@ TEST_CASE("a scene has a telescope's mirrors as bodies of chrome, and says which
           "room.json: /lenses/0/surfaces/2: its hole is not drawn: only mirrors have holes");
 }
 
+TEST_CASE("a side that goes on beyond the radius of its Q-type terms is warned of, with its place",
+          "[scene][lens]") {
+    const auto lens = [](const std::string& terms) {
+        return load_text(R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -90], "at": [0, 0, 0]}}],
+        "lenses": [{"name": "t", "surfaces": [{"radius": 60, "aperture": 5, "thickness": 3, "glass": "N-BK7", )" +
+                         terms + R"(}, {"aperture": 5}]}]})")
+            .warnings;
+    };
+    const std::string what =
+        ": its aperture is larger than the normalization radius of its Q-type terms, which say nothing there";
+    for (const std::string kind : {"qbfs", "qcon"}) {
+        const std::string terms = "\"" + kind + "\": [0.01], \"normalizationRadius\": ";
+        CHECK(lens(terms + "4.9") == std::vector{"room.json: /lenses/0/surfaces/0" + what});
+        CHECK(lens(terms + "5").empty());
+        // In another unit.
+        const auto primitive = [&](const std::string& radius) {
+            return load_text(R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -90], "at": [0, 0, 0]}}],
+            "materials": [{"name": "glass", "transmissionFactor": 1, "ior": 1.5}],
+            "meshes": [{"name": "lens", "role": "optic", "material": "glass", "transform": {"scale": 3},
+            "primitive": {"type": "lens", "thickness": 3, "front": {"aperture": 5},
+                          "back": {"aperture": 5, )" +
+                             terms + radius + "}}}]}")
+                .warnings;
+        };
+        CHECK(primitive("4.9") == std::vector{"room.json: /meshes/0/primitive/back" + what});
+        CHECK(primitive("5").empty());
+    }
+    CHECK(lens("\"qbfs\": [0.01]").empty());
+    const auto reaches = [](const std::string& text, const std::string& file) {
+        return outreaches_terms(parse_lens(text, file).rows[0].side);
+    };
+    for (const std::string kind : {"QBF", "QCN"}) {
+        const std::string words = "RDM\nSO 0 1E13\nS 60 3 NBK7\nCIR 5\nSPS " + kind + "; SCO C1 ";
+        CHECK(reaches(words + "4.9; SCO C3 0.01\nS 0 9\nSI 0 0\n", "a.seq"));
+        CHECK_FALSE(reaches(words + "5; SCO C3 0.01\nS 0 9\nSI 0 0\n", "a.seq"));
+    }
+    for (const std::string kind : {"0", "1"}) {
+        const auto zemax = [&](const std::string& radius) {
+            return kZemaxStart + std::string("SURF 1\n TYPE QED_TYPE\n CURV 0.02\n XDAT 1 ") + kind +
+                   "\n XDAT 2 1\n XDAT 3 " + radius +
+                   "\n XDAT 4 0.01\n GLAS N-BK7\n DISZ 3\n DIAM 5\nSURF 2\n DIAM 5\nSURF 3\n";
+        };
+        CHECK(reaches(zemax("4.9"), "a.zmx"));
+        CHECK_FALSE(reaches(zemax("5"), "a.zmx"));
+    }
+}
+
 TEST_CASE("words of lens files that cannot be followed are refused with their line",
           "[scene][lens][bad-input]") {
     const auto code_v = [](const std::string& words) {

@@ -50,4 +50,17 @@ inline trilens::LensPrescription double_gauss() {
     return prescription_of("double Gauss", rows);
 }
 
+/// The double Gauss with a field of 28 degrees among the samples of Zemax, as Optiland's samples have it.
+inline trilens::LensPrescription double_gauss_of_28_degrees() {
+    const trilens::Glass ssk2{"N-SSK2", 1.62229, 53.27}, sk2{"N-SK2", 1.60738, 56.65},
+        f5{"F5", 1.60342, 38.03}, sk16{"N-SK16", 1.62041, 60.32};
+    const PublishedRow rows[] = {{56.20238, 8.75, ssk2, 29},    {152.2858, 0.5, {}, 28},
+                                 {37.68262, 12.5, sk2, 24},     {0, 3.8, f5, 21},
+                                 {24.2313, 16.369445, {}, 15},  {0, 13.747957, {}, 10, true},
+                                 {-28.37731, 3.8, f5, 15},      {0, 11, sk16, 19},
+                                 {-37.92546, 0.5, {}, 20},      {177.41176, 7, sk16, 23},
+                                 {-79.41143, 61.487536, {}, 24}};
+    return prescription_of("double Gauss of 28 degrees", rows);
+}
+
 }  // namespace trilens_test

@@ -34,6 +34,8 @@ struct LensSide {
     SideForm form = SideForm::kRound;
     double across_curvature = 0;  // of a biconic along x; of a toric side 1 / the radius that it is turned at
     double across_conic = 0;      // of a biconic along x
+    /// Up to which radius its Q-type terms say something, for warnings; 0: it has none.
+    double terms_radius = 0;
 };
 
 inline bool is_round(const LensSide& side) {
@@ -76,10 +78,19 @@ inline LensSide section_of(const LensSide& side, LensSection section) {
     return cut;
 }
 
+/// Whether it goes on beyond what its Q-type terms were made for, where polynomials run away.
+inline bool outreaches_terms(const LensSide& side) {
+    return side.terms_radius > 0 && side.aperture > side.terms_radius * (1 + 1e-9);
+}
+
+inline constexpr const char* kOutreachesTerms =
+    "its aperture is larger than the normalization radius of its Q-type terms, which say nothing there";
+
 /// The shape `factor` times as large, up to the same aperture.
 inline LensSide with_scaled_shape(LensSide side, double factor) {
     side.curvature /= factor;
     side.across_curvature /= factor;
+    side.terms_radius *= factor;
     double unit = factor;
     for (std::size_t i = 0; i < kAsphereTerms; ++i) {
         side.coefficients[i] /= unit;

@@ -195,7 +195,7 @@ void add(const Primitive& primitive, Digest& digest) {
     if (const auto* lens = std::get_if<LensPrimitive>(&kind)) {
         for (const LensSide& side : {lens->front, lens->back}) {
             const auto& [curvature, conic, coefficients, aperture, normal_departures, form, across_curvature,
-                         across_conic] = side;
+                         across_conic, terms_radius] = side;  // the last one: for warnings alone
             digest.add_all(curvature, conic, coefficients, aperture, normal_departures);
             if (!is_round(side))  // keys of older sweeps stay
                 digest.add_all(static_cast<std::size_t>(form), across_curvature, across_conic);

@@ -141,6 +141,7 @@ void CodeVForm::add_q_terms(LensSide& side, const std::string& file) const {
     }
     if (terms.empty()) return;
     if (!(radius > 0)) throw InputError(file, place_, name_ + " without a normalization radius (SCO C1)");
+    side.terms_radius = radius;
     if (name_ == "SPS QBF")
         side.normal_departures = qbfs_departures(terms, radius);
     else

@@ -216,6 +216,7 @@ class ZemaxReader : LensLines {
         if (terms.empty()) return;
         if (kind == 0 && side.conic != 0)
             fail_at_type("of the kind Qbfs departs from a sphere: CONI must be 0");
+        side.terms_radius = radius;
         if (kind == 0)
             side.normal_departures = qbfs_departures(terms, radius);
         else

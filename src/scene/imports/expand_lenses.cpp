@@ -205,8 +205,10 @@ void expand_lenses(Json& scene, Reading& reading) {
             else
                 reading.warn(node["file"].place, row.place + ": " + what);
         };
-        for (const LensRow& row : lens.prescription.rows)
+        for (const LensRow& row : lens.prescription.rows) {
             if (row.hole > 0 && !row.mirror) warn_of(row, "its hole is not drawn: only mirrors have holes");
+            if (outreaches_terms(row.side)) warn_of(row, kOutreachesTerms);
+        }
         for (const LensRow* row : expansion.add_obscurations())
             warn_of(*row, "its obscuration is not drawn: it has glass on both sides");
         if (!expansion.add_stop()) reading.warn(node.place, "its stop lies on glass: no ring is made of it");

@@ -86,6 +86,7 @@ LensSide side_of(const WrittenSide& written, const Node& node) {
     add_terms(node.json, "normalDepartures", side.normal_departures);
     add_q_terms(node, "qcon", written, qcon_coefficients, side.coefficients);
     add_q_terms(node, "qbfs", written, qbfs_departures, side.normal_departures);
+    if (node.has("qcon") || node.has("qbfs")) side.terms_radius = written.normalization_radius;
     if (node.has("radiusX") || node.has("conicX")) {
         side.form = SideForm::kBiconic;
         side.across_curvature = written.x_radius == 0 ? 0 : 1 / written.x_radius;

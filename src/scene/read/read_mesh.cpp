@@ -77,6 +77,16 @@ void read_optic_uvs(const Node& node, const PolygonMesh& polygons, Mesh& mesh, R
     if (!mesh.maps_normals) reading.warn(node.place, "has no uv: the normal map of its material is ignored");
 }
 
+/// Of a lens, checked: sides that go on beyond what their terms were made for.
+void warn_of_terms(const Node& primitive, Reading& reading) {
+    for (const char* key : {"front", "back"}) {
+        if (!primitive.has(key)) continue;
+        LensSide side;
+        from_json_value(primitive[key].json, side);
+        if (outreaches_terms(side)) reading.warn(primitive[key].place, kOutreachesTerms);
+    }
+}
+
 void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     if (node.has("colors")) node["colors"].fail("are an object's: an optic has its material's colour alone");
     if (node.has("shading"))
@@ -87,6 +97,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
         if (node.has("displacement"))
             node["displacement"].fail("an optic's primitive is exact: heights move the points of a cage");
         mesh.primitive = read_primitive(node["primitive"], read_transform(node), node);
+        warn_of_terms(node["primitive"], reading);
         mesh.maps_normals = reading.scene.materials[mesh.material].normal_texture.picture != nullptr;
         return;
     }
@@ -189,6 +200,7 @@ PolygonMesh read_object_polygons(const Node& node, Mesh& mesh, std::size_t& unco
     PolygonMesh polygons = node.has("file")        ? read_mesh_file(node, inherits(node), reading)
                            : node.has("primitive") ? read_object_primitive(node["primitive"])
                                                    : read_inline_polygons(node);
+    if (node.has("primitive")) warn_of_terms(node["primitive"], reading);
     if (node.has("vertexColors") && !node.json.at("vertexColors").get<bool>()) polygons.colors.clear();
     read_subdivision(node, polygons.cage);
     mesh.face_count = polygons.cage.face_vertex_counts.size();

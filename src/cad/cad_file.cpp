@@ -1,0 +1,133 @@
+#include "cad/cad_file.h"
+
+#include <trilens/error.h>
+
+#include <BRepBndLib.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <IGESControl_Reader.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Poly_Triangulation.hxx>
+#include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_MapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "cad/cad_surfaces.h"
+
+namespace trilens {
+namespace {
+
+/// Triangles may turn by so much against each other.
+constexpr double kMostTurn = 0.2;  // radians
+
+bool is_one_of(const std::string& ending, std::initializer_list<const char*> endings) {
+    std::string low = ending;
+    for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::find(endings.begin(), endings.end(), low) != endings.end();
+}
+
+/// The readers of both kinds of file are one class but for their names.
+std::unique_ptr<XSControl_Reader> reader_of(const std::string& file) {
+    const std::string ending = std::filesystem::path(file).extension().string();
+    if (is_one_of(ending, {".step", ".stp"})) return std::make_unique<STEPControl_Reader>();
+    if (is_one_of(ending, {".iges", ".igs"})) return std::make_unique<IGESControl_Reader>();
+    throw InputError(file, "", "is neither STEP (.step, .stp) nor IGES (.iges, .igs)");
+}
+
+/// What a STEP file calls the body; empty: nothing.
+std::string name_of_shape(const XSControl_Reader& reader, const TopoDS_Shape& shape) {
+    const Handle(Standard_Transient) entity = reader.WS()->TransferReader()->EntityFromShapeResult(shape, 3);
+    const auto item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
+    return item.IsNull() || item->Name().IsNull() ? "" : item->Name()->ToCString();
+}
+
+void set_triangles(const TopoDS_Face& face, CadFace& into) {
+    TopLoc_Location place;
+    const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, place);
+    if (mesh.IsNull()) return;
+    const bool reversed = face.Orientation() == TopAbs_REVERSED;
+    const gp_Trsf& world_from_face = place.Transformation();
+    for (int i = 1; i <= mesh->NbNodes(); ++i) {
+        const gp_Pnt at = mesh->Node(i).Transformed(world_from_face);
+        into.points.emplace_back(at.X(), at.Y(), at.Z());
+    }
+    for (int i = 1; i <= mesh->NbTriangles(); ++i) {
+        int a = 0, b = 0, c = 0;
+        mesh->Triangle(i).Get(a, b, c);
+        if (reversed) std::swap(b, c);
+        const auto at = [&](int node) { return into.points[static_cast<std::size_t>(node - 1)]; };
+        // At a pole.
+        if (length(cross(at(b) - at(a), at(c) - at(a))) == 0) continue;
+        into.triangles.push_back({a - 1, b - 1, c - 1});
+    }
+}
+
+struct Reading {
+    const XSControl_Reader& reader;
+    const std::string& file;
+    std::vector<CadBody> bodies{};
+    TopTools_MapOfShape known{};  // what is in one of them
+
+    void add_body(const TopoDS_Shape& shape) {
+        CadBody body{name_of_shape(reader, shape), shape.ShapeType() == TopAbs_SOLID, {}};
+        if (body.name.empty()) body.name = "body " + std::to_string(bodies.size() + 1);
+        for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
+            if (!known.Add(at.Current())) continue;
+            CadFace& face = body.faces.emplace_back();
+            set_surfaces(TopoDS::Face(at.Current()), file, face);
+            set_triangles(TopoDS::Face(at.Current()), face);
+        }
+        if (!body.faces.empty()) bodies.push_back(std::move(body));
+    }
+};
+
+void mesh_finely(const TopoDS_Shape& shape, double deviation) {
+    Bnd_Box box;
+    BRepBndLib::Add(shape, box);
+    if (box.IsVoid()) return;
+    const double size = std::sqrt(box.SquareExtent());
+    BRepMesh_IncrementalMesh(shape, std::max(deviation * size, 1e-12), false, kMostTurn, false);
+}
+
+}  // namespace
+
+std::vector<CadBody> read_cad_file(const std::string& file, double deviation) {
+    // It would write to standard output.
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+    const auto reader = reader_of(file);
+    if (!std::ifstream(file)) throw InputError(file, "", "cannot be read");
+    try {
+        if (reader->ReadFile(file.c_str()) != IFSelect_RetDone)
+            throw InputError(file, "", "cannot be read: what is in it is not what its name says");
+        reader->TransferRoots();
+        const TopoDS_Shape all = reader->OneShape();
+        if (all.IsNull()) throw InputError(file, "", "has no face");
+        mesh_finely(all, deviation);
+        Reading reading{*reader, file};
+        for (const TopAbs_ShapeEnum kind : {TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE})
+            for (TopExp_Explorer at(all, kind); at.More(); at.Next()) reading.add_body(at.Current());
+        if (reading.bodies.empty()) throw InputError(file, "", "has no face");
+        return std::move(reading.bodies);
+    } catch (const Standard_Failure& failure) {
+        throw InputError(file, "", std::string("cannot be read: ") + failure.GetMessageString());
+    }
+}
+
+}  // namespace trilens
