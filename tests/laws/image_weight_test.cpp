@@ -80,7 +80,7 @@ TEST_CASE("an image of project weighs what the traced pixel's path does", "[laws
         CAPTURE(name);
         const auto world = shipped_world(name, 4, 64, 48);
         if (!world) continue;
-        const Tally tally = compare(*world, 8);
+        const Tally tally = compare(*world, 10);
         CHECK(tally.worst < 1e-6);
         CHECK(10 * tally.found >= 7 * tally.paths);
         compared += tally.found;

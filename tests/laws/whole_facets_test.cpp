@@ -98,7 +98,7 @@ Outlines outlines_of(const World& world, const FrameParams& frame) {
 
 TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law]") {
     for (const double radius : {0.05, 0.1, 0.2})
-        for (int i = 0; i < 6; ++i) {
+        for (int i = 0; i < 6; i += 2) {
             const Vec3 at(-1.1 + 0.37 * i, 0.5 - 0.13 * i, -1 - 0.1 * i);
             const auto world =
                 world_of(scene_of(kAbove, 4, plane("glass", 0.5) + ", " + ball("ball", "gold", at, radius)));

@@ -79,7 +79,7 @@ TEST_CASE("the vector engine draws the plain engine's bits where rays pass edges
     Random random(30);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
-        for (int i = 0; i < 150; ++i) {
+        for (int i = 0; i < 75; ++i) {
             const SampleGrid grid{3, 1, 27, 21, 1 + i % 2};
             const Frame frame = random_frame(random);
             const RayMesh mesh = i % 6 == 5 ? bowed_mesh(grid, frame, 1 + random.below(6))
@@ -103,6 +103,6 @@ TEST_CASE("the vector engine draws the plain engine's bits where rays pass edges
                      << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
                      << tally.seen);
         CHECK(tally.different == 0);
-        CHECK(tally.seen > 2000);
+        CHECK(tally.seen > 1000);
     }
 }
