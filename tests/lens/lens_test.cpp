@@ -1,6 +1,7 @@
 // Lenses by their prescriptions: published focal lengths and aberrations, exact rays, and what is refused.
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "base/util/error.h"
@@ -97,7 +98,7 @@ TEST_CASE("a double Gauss has the Seidel sums that another program finds", "[len
                                           -0.016264753735226404, -0.046484107476755930};
     const LensPrescription lens = double_gauss_of_28_degrees();
     const double radius = first_order(lens).focal_length / 10;
-    const SeidelSums seidel = seidel_sums(lens, {radius, std::tan(radians(14))});
+    const SeidelSums seidel = seidel_sums(lens, {radius, std::tan(14 * std::numbers::pi / 180)});
     const SeidelTerms& sum = seidel.sum;
     const std::array<double, 5> found{sum.spherical, sum.coma, sum.astigmatism, sum.petzval, sum.distortion};
     // The sums cancel to a tenth of their terms; indices have five digits here, and more there.

@@ -31,7 +31,7 @@ def test_each_package_is_named_once_for_a_purpose():
         elif line:
             assert purpose and line not in packages[purpose]
             packages[purpose].add(line)
-    assert set(packages) == {"program", "viewer", "package", "tests", "docs", "checks", "browser", "wheel", "arm"}
+    assert set(packages) == {"program", "viewer", "cad", "package", "tests", "docs", "checks", "browser", "wheel", "arm"}
     assert {"slurm-wlm", "catch2"} <= packages["tests"] and "doxygen" in packages["checks"]
     assert "lintian" in packages["package"]
 
