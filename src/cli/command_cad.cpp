@@ -3,7 +3,7 @@
 
 #include "cli/cad_options.h"
 #include "cli/commands.h"
-#include "cli/other_program.h"
+#include "terminal/other_program.h"
 
 namespace trilens {
 namespace {

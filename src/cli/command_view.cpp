@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/other_program.h"
 #include "cli/view_options.h"
+#include "terminal/other_program.h"
 
 namespace trilens {
 namespace {

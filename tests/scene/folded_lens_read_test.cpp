@@ -283,7 +283,7 @@ TEST_CASE("a side that goes on beyond the radius of its Q-type terms is warned o
         const auto primitive = [&](const std::string& radius) {
             return load_text(R"({"version": 1, "cameras": [{"lookAt": {"eye": [0, 0, -90], "at": [0, 0, 0]}}],
             "materials": [{"name": "glass", "transmissionFactor": 1, "ior": 1.5}],
-            "meshes": [{"name": "lens", "role": "optic", "material": "glass", "transform": {"scale": 3},
+            "meshes": [{"name": "lens", "role": "optic", "material": "glass", "transform": {"scale": [3, 3, 3]},
             "primitive": {"type": "lens", "thickness": 3, "front": {"aperture": 5},
                           "back": {"aperture": 5, )" +
                              terms + radius + "}}}]}")

@@ -1,4 +1,4 @@
-#include "cli/other_program.h"
+#include "terminal/other_program.h"
 
 #include <trilens/error.h>
 #include <unistd.h>
