@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "arrays.h"
 #include "bindings.h"
@@ -27,7 +28,7 @@ struct ImageRow {
 /// Rows of one length: each an ImageRow, so many EventRow, and two numbers for each parameter.
 struct Rows {
     std::size_t steps = 1, parameters = 0;
-    std::vector<std::byte> bytes;
+    ZeroedRecords records;
 
     std::size_t parameters_at() const { return sizeof(ImageRow) + steps * sizeof(EventRow); }
     std::size_t row_size() const { return parameters_at() + 2 * parameters * sizeof(double); }
@@ -63,8 +64,7 @@ py::dict row_type(const Rows& rows) {
     return type.of_size(rows.row_size());
 }
 
-ImageRow row_of(const WorldImage& image) {
-    auto row = empty_record<ImageRow>();
+void fill_row(const WorldImage& image, ImageRow& row) {
     row.x = image.pixel.x, row.y = image.pixel.y;
     row.t = image.t, row.length = image.length;
     row.optic = image.optic, row.object = image.object, row.facet = image.facet;
@@ -75,20 +75,17 @@ ImageRow row_of(const WorldImage& image) {
     copy_vector(image.weight, row.weight);
     for (std::size_t axis = 0; axis < 2; ++axis) copy_vector(image.derivative[axis], row.derivative[axis]);
     row.step_count = static_cast<Id>(image.steps.size());
-    return row;
 }
 
-EventRow row_of(const WorldImage& image, std::size_t place) {
-    auto row = empty_record<EventRow>();
+void fill_row(const WorldImage& image, std::size_t place, EventRow& row) {
     row.optic = row.face = kNone;
-    if (place >= image.steps.size()) return row;
+    if (place >= image.steps.size()) return;
     if (place < image.events.size()) {
         fill_event(image.events[place], row);
     } else {
         row.optic = image.steps[place].optic;
         copy_text(event_name(image.steps[place].event), row.event);
     }
-    return row;
 }
 
 /// Writes rows one behind the other; their numbers of steps and parameters, and how many there are, are
@@ -96,26 +93,29 @@ EventRow row_of(const WorldImage& image, std::size_t place) {
 class RowWriter {
   public:
     RowWriter(Rows& rows, std::size_t count) : rows_(rows) {
-        rows.bytes.resize(count * rows.row_size());
-        next_ = rows.bytes.data();
+        rows.records = ZeroedRecords(count, rows.row_size());
+        next_ = rows.records.data();
     }
 
     void add(const WorldImage& image, std::size_t point, bool complete) {
-        ImageRow row = row_of(image);
+        auto& row = next<ImageRow>();
         row.point = static_cast<std::int64_t>(point);
         row.complete = complete;
-        put(row);
-        for (std::size_t i = 0; i < rows_.steps; ++i) put(row_of(image, i));
+        fill_row(image, row);
+        for (std::size_t i = 0; i < rows_.steps; ++i) fill_row(image, i, next<EventRow>());
         for (int axis = 0; axis < 2; ++axis)
             for (std::size_t k = 0; k < rows_.parameters; ++k)
-                put(k < image.by_parameter.size() ? image.by_parameter[k][axis] : std::nan(""));
+                next<double>() = k < image.by_parameter.size() ? image.by_parameter[k][axis] : std::nan("");
     }
 
   private:
+    /// All of them are of eights of bytes, and zero.
     template <class Value>
-    void put(const Value& value) {
-        std::memcpy(next_, &value, sizeof value);
-        next_ += sizeof value;
+    Value& next() {
+        static_assert(sizeof(Value) % 8 == 0 && alignof(Value) <= 8 && std::is_trivial_v<Value>);
+        auto* value = reinterpret_cast<Value*>(next_);
+        next_ += sizeof(Value);
+        return *value;
     }
 
     Rows& rows_;
@@ -184,7 +184,7 @@ std::vector<ImageStart> starts_of(const py::object& images) {
 }
 
 py::array rows_array(Rows rows) {
-    return record_array(row_type(rows), std::move(rows.bytes));
+    return record_array(row_type(rows), std::move(rows.records));
 }
 
 /// What the facets have is all that can be told without refining.

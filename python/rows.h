@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -38,6 +40,37 @@ class RecordType {
   private:
     py::list names_, formats_, offsets_;
 };
+
+/// Memory for records of one size, zero all over: as the system gives it, so that nothing is written twice.
+class ZeroedRecords {
+  public:
+    ZeroedRecords() = default;
+    ZeroedRecords(std::size_t count, std::size_t record_size)
+        : count_(count),
+          bytes_(static_cast<std::byte*>(std::calloc(std::max<std::size_t>(count, 1), record_size))) {
+        if (!bytes_) throw std::bad_alloc();
+    }
+    std::size_t count() const { return count_; }
+    std::byte* data() const { return bytes_.get(); }
+    std::byte* release() { return bytes_.release(); }
+
+  private:
+    struct Free {
+        void operator()(std::byte* bytes) const { std::free(bytes); }
+    };
+    std::size_t count_ = 0;
+    std::unique_ptr<std::byte, Free> bytes_;
+};
+
+/// The array takes the memory over, without a copy.
+inline py::array record_array(const py::dict& type, ZeroedRecords records) {
+    const py::object dtype = py::module_::import("numpy").attr("dtype")(type);
+    const auto size = type["itemsize"].cast<py::ssize_t>();
+    const auto count = static_cast<py::ssize_t>(records.count());
+    const void* data = records.data();
+    const py::capsule owner(records.release(), [](void* p) { std::free(p); });
+    return py::array(py::dtype::from_args(dtype), {count}, {size}, data, owner);
+}
 
 /// Records that stand one behind the other; the array takes the list over, without a copy.
 template <class Record>

@@ -121,6 +121,37 @@ std::vector<Box> hulls_of(const CheckedCage& cage) {
     return hulls;
 }
 
+/// Per face of the cage whether its limit surface lies in a plane for sure: without smoothing where its
+/// corners do.
+std::vector<bool> flat_faces(const CheckedCage& cage) {
+    constexpr double kOffPlane = 1e-14;  // of the face's size
+    std::vector<bool> is_flat(static_cast<std::size_t>(cage.face_count()), false);
+    if (cage.scheme != SubdivisionScheme::kBilinear) return is_flat;
+    for (int face = 0; face < cage.face_count(); ++face) {
+        const auto way_to = [&](int k) {
+            const auto corner = [&](int i) {
+                return cage.points[static_cast<std::size_t>(
+                    cage.vertices[static_cast<std::size_t>(cage.first[static_cast<std::size_t>(face)] + i)])];
+            };
+            return corner(k) - corner(0);
+        };
+        const int size = cage.face_size(face);
+        Vec3 normal(0);
+        double reach = 0;
+        for (int k = 1; k < size; ++k) reach = std::max(reach, length(way_to(k)));
+        for (int k = 2; k < size; ++k) {
+            const Vec3 other = cross(way_to(k - 1), way_to(k));
+            if (length(other) > length(normal)) normal = other;
+        }
+        normal = normalize_or_zero(normal);
+        is_flat[static_cast<std::size_t>(face)] = true;
+        for (int k = 1; k < size; ++k)
+            if (std::fabs(dot(way_to(k), normal)) > kOffPlane * reach)
+                is_flat[static_cast<std::size_t>(face)] = false;
+    }
+    return is_flat;
+}
+
 struct NamedCage {
     const CheckedCage& cage;
     const std::string& name;
@@ -136,7 +167,8 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn, double memory)
         : domain_(cage.scheme == SubdivisionScheme::kLoop ? FaceDomain::kTriangle : FaceDomain::kSquare),
           patches_(cage, name, memory),
-          hulls_(hulls_of(cage)) {
+          hulls_(hulls_of(cage)),
+          is_flat_(flat_faces(cage)) {
         std::vector<bool> is_hole(static_cast<std::size_t>(cage.face_count()), false);
         for (int hole : cage.holes) is_hole[static_cast<std::size_t>(hole)] = true;
 
@@ -159,6 +191,9 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     FaceBorder border(Id face) const override { return faces_[face].border; }
     std::size_t bytes_held() const override {
         return faces_.capacity() * sizeof(SurfaceFace) + hulls_.capacity() * sizeof(Box) + patches_.bytes();
+    }
+    bool is_flat(Id face) const override {
+        return is_flat_[static_cast<std::size_t>(faces_[face].cage_face)];
     }
     std::optional<Box> hull(Id face) const override {
         return hulls_[static_cast<std::size_t>(faces_[face].cage_face)];
@@ -232,7 +267,8 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     bool is_as_given_ = true;
     LimitPatches patches_;
     SharedPolynomialBounder bounder_;
-    std::vector<Box> hulls_;  // per face of the cage
+    std::vector<Box> hulls_;     // per face of the cage
+    std::vector<bool> is_flat_;  // likewise
     std::vector<SurfaceFace> faces_;
 };
 

@@ -70,6 +70,7 @@ class PolygonSurface final : public Surface, public HasHulls, public HasCageFace
     std::size_t face_count() const override { return faces_.size(); }
     FaceDomain domain(Id) const override { return FaceDomain::kTriangle; }
     FaceBorder border(Id face) const override { return faces_[face].border; }
+    bool is_flat(Id) const override { return true; }
     std::size_t bytes_held() const override { return faces_.capacity() * sizeof(Face); }
 
     std::optional<CageFace> cage_face(Id face) const override { return CageFace{static_cast<int>(face), -1}; }

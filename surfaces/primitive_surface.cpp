@@ -28,6 +28,7 @@ class PrimitiveSurface final : public Surface {
     FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
     FaceBorder border(Id face) const override { return shape_->border(face); }
     bool has_closed_form() const override { return true; }
+    bool is_flat(Id) const override { return std::holds_alternative<PlanePrimitive>(kind_); }
     double sphere_curvature() const override {
         const auto* sphere = std::get_if<SpherePrimitive>(&kind_);
         return sphere ? 1 / sphere->radius : 0;

@@ -301,6 +301,7 @@ std::vector<SurfaceParameter> regular_starts(const Surface& surface, int n) {
 }
 
 std::vector<SpecularPoint> distinct_images(std::vector<SpecularPoint> images) {
+    if (images.size() < 2) return images;
     std::stable_sort(images.begin(), images.end(),
                      [](const SpecularPoint& a, const SpecularPoint& b) { return a.residual < b.residual; });
     auto same = [](const SpecularPoint& a, const SpecularPoint& b) {

@@ -189,9 +189,9 @@ TEST_CASE("second derivatives of the optical path stay within their radii over a
                     0, box.middle[i] + away * box.half[i] * Vec2(draw(random), draw(random))));
             return chain_second_derivatives(example.chain, chain_bend(example.chain, points), points);
         };
-        const std::vector<double> middle = derivatives_at(0);
+        const ChainMatrix middle = derivatives_at(0);
         for (int k = 0; k < 30; ++k) {
-            const std::vector<double> there = derivatives_at(1);
+            const ChainMatrix there = derivatives_at(1);
             for (std::size_t j = 0; j < there.size(); ++j) {
                 const double change = std::fabs(there[j] - middle[j]);
                 CAPTURE(half, j, change, radii[j]);

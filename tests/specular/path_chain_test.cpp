@@ -49,7 +49,8 @@ TEST_CASE("a chain moves with its point as its Hessian says", "[specular][law]")
             REQUIRE(hessian.is_regular());
             constexpr double kStep = 1e-5;
             const Vec3 by(0.3, -0.8, 0.5);
-            std::vector<std::vector<Vec2>> law, place;
+            std::vector<PerEvent<Vec2>> law;
+            std::vector<std::vector<Vec2>> place;
             for (const double sign : {1.0, -1.0}) {
                 PathChain moved = example.chain;
                 moved.point.place += sign * kStep * by;
@@ -62,7 +63,7 @@ TEST_CASE("a chain moves with its point as its Hessian says", "[specular][law]")
             }
             std::vector<Vec2> right;
             for (std::size_t i = 0; i < count; ++i) right.push_back((law[1][i] - law[0][i]) / (2 * kStep));
-            const std::vector<Vec2> expected = hessian.solve(right);
+            const PerEvent<Vec2> expected = hessian.solve(right);
             for (std::size_t i = 0; i < count; ++i) {
                 const Vec2 found = (place[0][i] - place[1][i]) / (2 * kStep);
                 CHECK(length(found - expected[i]) < 1e-6 * (1 + length(expected[i])));

@@ -243,3 +243,31 @@ TEST_CASE("the first order is the same bit for bit without the second", "[surfac
         }
     }
 }
+
+TEST_CASE("a face that is said to be flat lies in a plane, and a flat box's are", "[surfaces][law]") {
+    std::mt19937 random(31);
+    std::uniform_real_distribution<double> anywhere(0, 1);
+    Cage box = cube(), twisted = cube(), smooth = cube();
+    box.scheme = twisted.scheme = SubdivisionScheme::kBilinear;
+    twisted.points[0] += Vec3(0.1, 0.2, 0.3);
+    std::vector<std::pair<std::unique_ptr<Surface>, std::size_t>> surfaces;  // and how many faces are flat
+    surfaces.emplace_back(quiet_cage(box), 6);
+    surfaces.emplace_back(quiet_cage(twisted), 3);
+    surfaces.emplace_back(quiet_cage(smooth), 0);
+    surfaces.emplace_back(make_primitive_surface({.kind = PlanePrimitive{}}), 1);
+    surfaces.emplace_back(make_primitive_surface({.kind = CylinderPrimitive{}}), 0);
+    for (const auto& [surface, expected] : surfaces) {
+        std::size_t flat = 0;
+        for (Id face = 0; face < surface->face_count(); ++face) {
+            if (!surface->is_flat(face)) continue;
+            ++flat;
+            const SurfacePoint middle = surface->eval(face, {0.5, 0.5});
+            for (int i = 0; i < 50; ++i) {
+                const SurfacePoint p = surface->eval(face, {anywhere(random), anywhere(random)});
+                CHECK(std::fabs(dot(p.position - middle.position, middle.normal)) < 1e-13);
+                CHECK(length(p.normal - middle.normal) < 1e-13);
+            }
+        }
+        CHECK(flat == expected);
+    }
+}

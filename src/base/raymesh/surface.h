@@ -121,6 +121,9 @@ class Surface {
         return hit && hit->t < t_max;
     }
 
+    /// Whether the whole face lies in a plane; false says nothing.
+    virtual bool is_flat(Id /*face*/) const { return false; }
+
     /// 1 / radius of the sphere that the whole surface lies on, normals outward; 0 of every other surface.
     virtual double sphere_curvature() const { return 0; }
     /// Of a sphere, where its normal is along `normal`, to rounding; no face where that is not known.

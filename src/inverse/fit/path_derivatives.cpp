@@ -29,7 +29,7 @@ SurfacePoint point_on(const FitOptic& optic, const FitOptic& nominal, const Opti
 /// A path at its fixed places on the surfaces of a scene.
 struct FixedPath {
     std::vector<SurfacePoint> points;
-    std::vector<Vec2> law;
+    PerEvent<Vec2> law;
 };
 
 /// With the surfaces, the glass and the camera that `moved` has.
@@ -97,7 +97,7 @@ std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const Sho
         const Vec2 change = parameter.moves_camera
                                 ? shown_change(parameter, place, from, to)
                                 : Vec2(dot(film->slope[0], to - from), dot(film->slope[1], to - from));
-        std::vector<Vec2> law = high.law;
+        PerEvent<Vec2> law = high.law;
         for (std::size_t i = 0; i < law.size(); ++i) law[i] -= low.law[i];
         found.by_parameter.push_back(sensitivity.moved(change, law) / (2 * parameter.step));
     }

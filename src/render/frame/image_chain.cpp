@@ -15,17 +15,22 @@ namespace {
 /// Pixels move by differences of a step of this share of the distance, where the camera has no linear map.
 constexpr double kPlaceStep = 1e-6;
 
-double index_of(const ChainModel& model, Id body, int colour) {
-    return body == kNone ? 1 : ior_of(model.scene->materials[model.materials[body]], colour);
+/// The glass of each event, and what happens there; `surface_of` and `material_of` are asked per optic.
+template <typename SurfaceOf, typename MaterialOf>
+PerEvent<ChainEvent> chain_events(std::span<const PathEvent> events, std::span<const EventMedia> media,
+                                  Colours colours, const SurfaceOf& surface_of,
+                                  const MaterialOf& material_of) {
+    const auto index_of = [&](Id body) { return body == kNone ? 1 : ior_of(material_of(body), colours); };
+    PerEvent<ChainEvent> chain;
+    for (std::size_t i = 0; i < events.size(); ++i)
+        chain.push_back({surface_of(events[i].optic), index_of(media[i].before), index_of(media[i].after),
+                         events[i].event == Event::kReflect});
+    return chain;
 }
 
-ChainModel model_of(const World& world, const Frame& frame, std::vector<const Surface*>& surfaces,
-                    std::vector<Id>& materials) {
-    for (const Optic& optic : world.optics) {
-        surfaces.push_back(optic.surface.get());
-        materials.push_back(optic.material);
-    }
-    return {&world.scene, &frame.camera, surfaces, materials};
+/// Green's where glass disperses, but that of `ior` where the path has one event.
+Colours usual_colours(std::span<const PathEvent> events) {
+    return events.size() > 1 ? Colours{1} : kAllColours;
 }
 
 }  // namespace
@@ -39,12 +44,12 @@ std::optional<ChainEnd> chain_eye(const Camera& camera) {
     return std::nullopt;
 }
 
-std::optional<std::vector<EventMedia>> event_media(const World& world, const Media& around,
-                                                   std::span<const PathEvent> events) {
+std::optional<PerEvent<EventMedia>> event_media(const World& world, const Media& around,
+                                                std::span<const PathEvent> events) {
     const auto active = [&](const Media& media) {
         return media.active([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });
     };
-    std::vector<EventMedia> media;
+    PerEvent<EventMedia> media;
     Media now = around;
     for (const PathEvent& event : events) {
         if (world.optics[event.optic].mirror) {
@@ -64,14 +69,12 @@ std::optional<PathChain> make_chain(const ChainModel& model, std::span<const Pat
                                     std::span<const EventMedia> media, const ProjectedPoint& point) {
     const std::optional<ChainEnd> eye = chain_eye(*model.camera);
     if (!eye || events.empty()) return std::nullopt;
-    PathChain chain;
-    chain.eye = *eye;
-    chain.point = {point.place, point.is_direction};
-    const int colour = model.colours.value_or(events.size() > 1 ? 1 : -1);
-    for (std::size_t i = 0; i < events.size(); ++i)
-        chain.events.push_back({model.surfaces[events[i].optic], index_of(model, media[i].before, colour),
-                                index_of(model, media[i].after, colour), events[i].event == Event::kReflect});
-    return chain;
+    return PathChain{
+        *eye,
+        {point.place, point.is_direction},
+        chain_events(
+            events, media, usual_colours(events), [&](Id optic) { return model.surfaces[optic]; },
+            [&](Id optic) -> const Material& { return model.scene->materials[model.materials[optic]]; })};
 }
 
 std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near) {
@@ -135,11 +138,8 @@ HistoryQuery history_query(const World& world, const Frame& frame, std::span<con
 
 std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, const ChainStart& start,
                                       const ProjectedPoint& point) {
-    if (start.events.empty()) return std::nullopt;
-    std::vector<const Surface*> surfaces;
-    std::vector<Id> materials;
-    ChainModel model = model_of(world, frame, surfaces, materials);
-    model.colours = start.colours;
+    const std::optional<ChainEnd> eye = chain_eye(frame.camera);
+    if (start.events.empty() || !eye) return std::nullopt;
     Media around;
     if (!frame.camera_media.none()) {
         const std::optional<Ray> view = exact_ray(frame.camera, start.pixel);
@@ -147,10 +147,17 @@ std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, co
         around = frame.camera_media.of(*view);
     }
     const auto media = event_media(world, around, start.events);
-    const auto chain = media ? make_chain(model, start.events, *media, point) : std::nullopt;
-    if (!chain) return std::nullopt;
+    if (!media) return std::nullopt;
+    SolvedChain solved;
+    PathChain& chain = solved.chain;
+    chain.eye = *eye;
+    chain.point = {point.place, point.is_direction};
+    chain.events = chain_events(
+        start.events, *media, start.colours.value_or(usual_colours(start.events)),
+        [&](Id optic) { return world.optics[optic].surface.get(); },
+        [&](Id optic) -> const Material& { return world.scene.materials[world.optics[optic].material]; });
 
-    std::vector<SurfaceParameter> at;
+    PerEvent<SurfaceParameter> at;
     for (const PathEvent& event : start.events) at.push_back({event.face, event.uv});
     const auto find = [&](std::size_t event, const Vec3& from,
                           const Vec3& towards) -> std::optional<SurfaceParameter> {
@@ -160,12 +167,13 @@ std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, co
         if (!hit) return std::nullopt;
         return SurfaceParameter{hit->face, hit->uv};
     };
-    std::optional<ChainShape> shape = solve_chain(*chain, at, find);
+    std::optional<ChainShape> shape = solve_chain(chain, at, find);
     if (!shape) return std::nullopt;
-    const ChainBend bend = chain_bend(*chain, shape->points);
+    const ChainBend bend = chain_bend(chain, shape->points);
     for (std::size_t i = 0; i < shape->points.size(); ++i)
         if ((dot(bend.way[i], shape->points[i].normal) <= 0) != start.events[i].front) return std::nullopt;
-    return SolvedChain{*chain, std::move(*shape)};
+    solved.shape = std::move(*shape);
+    return solved;
 }
 
 std::optional<ChainImage> solve_image(const World& world, const Frame& frame, const ChainStart& start,

@@ -26,9 +26,6 @@ struct ChainModel {
     const Camera* camera = nullptr;
     std::span<const Surface* const> surfaces;  // per optic
     std::span<const Id> materials;             // per optic
-    // Whose index is taken where glass disperses; none: green's, but that of `ior` where the path has one
-    // event.
-    std::optional<Colours> colours{};
 };
 
 /// Per event the body of glass before it and behind it; kNone: air.
@@ -37,13 +34,14 @@ struct EventMedia {
 };
 
 /// Which media a path of the camera goes through; none where they cannot be told.
-std::optional<std::vector<EventMedia>> event_media(const World& world, const Media& around,
-                                                   std::span<const PathEvent> events);
+std::optional<PerEvent<EventMedia>> event_media(const World& world, const Media& around,
+                                                std::span<const PathEvent> events);
 
 /// Where all paths of a camera begin: its eye, or the direction of parallel rays; none where it has neither.
 std::optional<ChainEnd> chain_eye(const Camera& camera);
 
-/// The chain of a path; none for cameras whose rays meet in no eye and are not parallel.
+/// The chain of a path; none for cameras whose rays meet in no eye and are not parallel. Of glass that
+/// disperses green's index counts, but that of `ior` where the path has one event.
 std::optional<PathChain> make_chain(const ChainModel& model, std::span<const PathEvent> events,
                                     std::span<const EventMedia> media, const ProjectedPoint& point);
 
@@ -66,7 +64,8 @@ HistoryQuery history_query(const World& world, const Frame& frame, std::span<con
 struct ChainStart {
     std::span<const PathEvent> events;  // of each the optic, what happens, the side, the face and the place
     Vec2 pixel{0};                      // about where the film shows it
-    std::optional<Colours> colours{};   // ChainModel's
+    // Whose index is taken where glass disperses; none: as make_chain has it.
+    std::optional<Colours> colours{};
 };
 
 /// A path of light, and where it meets each surface.

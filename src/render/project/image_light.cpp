@@ -42,6 +42,29 @@ Vec3 weight_over_one(const World& world, const Frame& frame, const OneEventWay& 
                                       : arriving * weights.refract * transmittance(glass.after, length(on));
 }
 
+std::optional<Vec3> weight_over_several(const PathWorld& paths, const EventsWay& way) {
+    Vec3 weight(1), from = way.start;
+    Colours colours = kAllColours;
+    Media media = way.around;
+    for (std::size_t i = 0; i < way.events.size(); ++i) {
+        const PathEvent& event = way.events[i];
+        const Vec3 to = event.point - from;
+        weight *= body_transmittance(paths, active_medium(paths, media), length(to));
+        const Meeting at{event.optic, normalize_or_zero(to), event.point, event.normal, event.front};
+        const std::vector<Branch> ways = branches(paths, at, media, colours);
+        // Where glass parts them green comes first.
+        const auto taken = std::find_if(ways.begin(), ways.end(), [&](const Branch& one) {
+            return one.step.event == event.event && (way.colours.empty() || one.colours == way.colours[i]);
+        });
+        if (taken == ways.end()) return std::nullopt;
+        weight *= taken->weight;
+        media = taken->media;
+        colours = taken->colours;
+        from = event.point;
+    }
+    return weight * body_transmittance(paths, active_medium(paths, media), length(way.point - from));
+}
+
 Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, double way) {
     if (frame.camera_media.none()) return Vec3(1);
     return transmittance(glass_around(world, frame.camera_media.of(view)), way);

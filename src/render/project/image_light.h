@@ -63,6 +63,20 @@ struct OneEventWay {
 /// it. The angle of incidence is that of the law: at half of the angle between both stretches, or by Snell.
 Vec3 weight_over_one(const World& world, const Frame& frame, const OneEventWay& way);
 
+/// How light comes from a point over any optics to the camera.
+struct EventsWay {
+    Media around;                       // what the camera's ray starts in
+    Vec3 start{0};                      // where
+    std::span<const PathEvent> events;  // with their places and normals
+    Vec3 point{0};
+    // Per event the colours that go on, where glass parts them; empty: the middle one, if it does.
+    std::span<const Colours> colours{};
+};
+
+/// The share of each colour that comes this way; none where light cannot part so. Of `paths` no surface is
+/// asked.
+std::optional<Vec3> weight_over_several(const PathWorld& paths, const EventsWay& way);
+
 /// The share of each colour that reaches a point seen directly.
 Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, double way);
 

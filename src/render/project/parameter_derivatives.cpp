@@ -40,7 +40,7 @@ double size_of(const World& world, const Frame& frame) {
 
 /// F of a chain at fixed places, and where the camera shows the first of them.
 struct ChainState {
-    std::vector<Vec2> law;
+    PerEvent<Vec2> law;
     Vec2 pixel{0};
 };
 
@@ -164,7 +164,7 @@ std::vector<Vec2> ParameterDerivatives::of_chain(const WorldImage& image, const 
         const auto before = step.before->state(events, *media, point, points, image.pixel),
                    after = step.after->state(events, *media, point, points, image.pixel);
         if (!before || !after) return {};
-        std::vector<Vec2> law = after->law;
+        PerEvent<Vec2> law = after->law;
         for (std::size_t i = 0; i < events.size(); ++i) law[i] -= before->law[i];
         moved.push_back(sensitivity.moved(after->pixel - before->pixel, law) / step.size);
     }

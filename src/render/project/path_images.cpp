@@ -1,9 +1,13 @@
 #include "render/project/path_images.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
+#include "paths/facets/divide_facet.h"
 #include "render/project/image_light.h"
 #include "render/world/world.h"
 #include "specular/specular_point.h"
@@ -11,13 +15,9 @@
 namespace trilens {
 namespace {
 
-/// Rays of traced parts that one search starts from.
-constexpr std::size_t kLoneStarts = 6;
 /// A point is free if what its ray meets lies within this share of the way.
 constexpr double kPathFreeShare = 1e-6;
 constexpr std::size_t kPathFacetsPerTask = 256, kLonePerTask = 4;
-/// The cosine of the angle at which a ray still passes near a point.
-constexpr double kNearCosine = 0.9995;
 /// Traced parts whose paths are held at once, until their rays are added to their histories.
 constexpr std::size_t kLoneBatch = 1024;
 
@@ -33,12 +33,33 @@ bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film)
     return high.x >= 0 && high.y >= 0 && low.x <= film.width && low.y <= film.height;
 }
 
+std::array<Vec3, 3> corners_of(const RayMesh& outline, Id facet) {
+    const IdTriple& c = outline.facets[facet];
+    return {outline.screen[c[0]], outline.screen[c[1]], outline.screen[c[2]]};
+}
+
+/// Pixels: the longest side of the part of a facet; infinite where a corner lies behind the eye.
+double reach_of(const RayMesh& outline, const PathLeaf& leaf) {
+    std::array<Vec2, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 s = corners_of(outline, leaf.facet)[k];
+        if (!(s.z > 0)) return std::numeric_limits<double>::infinity();
+        corner[k] = Vec2(s) / s.z;
+    }
+    const double longest = std::max(
+        {length(corner[1] - corner[0]), length(corner[2] - corner[1]), length(corner[0] - corner[2])});
+    return std::ldexp(longest, -leaf.level);
+}
+
 Vec2 lone_pixel(const PathLeaf& leaf) {
     return Vec2(leaf.centre) / leaf.centre.z;
 }
 
-bool same_image(const SeveralOpticsImage& a, const SeveralOpticsImage& b) {
-    return a.steps == b.steps && length(a.exact.pixel - b.exact.pixel) < kSamePixels;
+/// Whether some of a traced part may be on the film, or within a pixel of it.
+bool may_be_on_film(const RayMesh& outline, const PathLeaf& leaf, const Vec2& film) {
+    if (!may_reach_film(corners_of(outline, leaf.facet), film)) return false;
+    const Vec2 centre = lone_pixel(leaf);
+    return length(centre - glm::clamp(centre, Vec2(0), film)) <= reach_of(outline, leaf) + 1;
 }
 
 /// Whether the optic itself hides a point of it from the camera. `size`: the optic's, for parallel rays.
@@ -96,6 +117,22 @@ std::vector<Id> facets_in_view(const PathBuilder& paths, const SurfaceGrid& grid
     return seen;
 }
 
+/// Whether all rays of a facet of a node are known to have its history: they are but for paths so faint that
+/// nobody asked, and behind places that rest on an object (one_history.cpp).
+bool is_proven(const OpticPaths& paths, Id node, std::size_t facet) {
+    const Id leaf = paths.nodes[node].leaves[facet];
+    for (Id at = node; at != kNone; at = paths.nodes[at].parent) {
+        const PathNode& one = paths.nodes[at];
+        const Id own = one.facet_of(leaf);
+        if (own == kNone) return false;
+        bool is_bright = one.principal[own];
+        for (const Id corner : one.mesh.facets[own])
+            is_bright = is_bright || of_worst_colour(one.weight[corner]) > kMuchLight * kLeastWeight;
+        if (!is_bright || (at != node && one.rests[own])) return false;
+    }
+    return true;
+}
+
 /// Paths as deep as the word goes, those alone that may begin it.
 PathWorld world_of_word(const World& world, const EventWord& word) {
     PathWorld paths = path_world(world);
@@ -114,11 +151,13 @@ SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame,
       frame_(frame),
       choice_(choice),
       followed_(world_of_word(world, choice.word)),
-      builder_(make_optic_paths(world, frame, optic, nullptr, &followed_)) {
+      builder_(make_optic_paths(world, frame, optic, nullptr, &followed_)),
+      surface_of_([&world](Id other) -> const Surface& { return *world.optics[other].surface; }) {
     builder_.prepare(facets_in_view(builder_, frame.optics[optic].facets->grid(), world.scene.film));
     add_nodes();
     add_lone_rays();
     drop_histories();
+    get_ready();
 }
 
 /// Those that are not asked for.
@@ -130,21 +169,17 @@ void SeveralOpticsImages::drop_histories() {
     history_at_.clear();
 }
 
-/// By the chain of surfaces where the camera has an eye, from the start's own path; else, or where the chain
-/// comes to no image but the start's ray passes near the point, on the film.
-std::optional<HistoryImage> SeveralOpticsImages::refine(const HistoryQuery& query, const Vec2& start) const {
-    const std::optional<HistoryPath> path = history_path(query, start);
-    if (!path) return std::nullopt;
-    if (const auto solved = solve_image(world_, frame_, {path->events, start}, {query.point})) {
-        std::optional<HistoryImage> image = history_image_at(query, solved->film.pixel);
-        if (image && solved->is_regular) {
-            image->derivative = solved->derivative;
-            return image;
-        }
+/// Rows of what is made later; of optics whose normals are not their own, exact rays alone tell.
+void SeveralOpticsImages::get_ready() {
+    for (History& history : histories_) {
+        for (const PathSegment& segment : history.chain) history.colours.push_back(segment.colours);
+        if (!std::all_of(history.steps.begin(), history.steps.end(), [&](const Step& step) {
+                return has_own_normals(world_.scene.meshes[world_.optics[step.optic].mesh]);
+            }))
+            history.proven.assign(history.proven.size(), 0);
+        history.facet_paths = std::make_unique<Lazy<FacetPaths>[]>(history.grid_facet.size());
+        history.lone_paths = std::make_unique<Lazy<LonePath>[]>(history.lone.size());
     }
-    const double along = dot(path->exit.direction, normalize_or_zero(query.point - path->exit.origin));
-    if (along < kNearCosine && chain_eye(frame_.camera)) return std::nullopt;
-    return refine_history_image(query, start);
 }
 
 void SeveralOpticsImages::add_nodes() {
@@ -166,8 +201,10 @@ void SeveralOpticsImages::add_nodes() {
         history.seeds = std::make_unique<MeshPointImages>(nodes[n].mesh);
         for (const Vec3& weight : nodes[n].weight)
             history.most_light = std::max(history.most_light, of_worst_colour(weight));
-        for (const Id leaf : nodes[n].leaves)
-            history.grid_facet.push_back(builder_.paths().leaves[leaf].facet);
+        for (std::size_t f = 0; f < nodes[n].leaves.size(); ++f) {
+            history.grid_facet.push_back(builder_.paths().leaves[nodes[n].leaves[f]].facet);
+            history.proven.push_back(is_proven(builder_.paths(), static_cast<Id>(n), f));
+        }
     }
 }
 
@@ -228,63 +265,16 @@ std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) c
 }
 
 void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed) {
+    const RayMesh& outline = builder_.paths().outline;
+    const Vec2 film(world_.scene.film.width, world_.scene.film.height);
     for (std::size_t i = 0; i < followed.size(); ++i) {
         const PathSegment& segment = followed[i];
         if (segment.parent == kNone || (segment.colours != kAllColours && segment.colours != 1)) continue;
         History& history = history_of(followed, static_cast<Id>(i));
-        history.lone.push_back({lone_pixel(leaf), leaf.facet, segment.ray});
+        history.lone.push_back({lone_pixel(leaf), leaf.facet, segment.ray, reach_of(outline, leaf),
+                                may_be_on_film(outline, leaf, film)});
         history.most_light = std::max(history.most_light, of_worst_colour(segment.weight));
     }
-}
-
-/// Film positions to search from, with their facets.
-std::vector<std::pair<Vec2, Id>> SeveralOpticsImages::starts(const History& history,
-                                                             const Vec3& point) const {
-    std::vector<std::pair<Vec2, Id>> starts;
-    if (history.seeds)
-        for (const MeshPointImage& seed : history.seeds->images(point))
-            starts.emplace_back(seed.screen, history.grid_facet[seed.facet]);
-
-    // The lone rays that pass the point at the smallest angles.
-    std::vector<std::pair<double, const LoneRay*>> nearest;
-    for (const LoneRay& lone : history.lone) {
-        const double along = dot(normalize_or_zero(point - lone.exit.origin), lone.exit.direction);
-        if (along > 0) nearest.emplace_back(-along, &lone);
-    }
-    const std::size_t count = std::min(kLoneStarts, nearest.size());
-    std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end());
-    for (std::size_t i = 0; i < count; ++i)
-        starts.emplace_back(nearest[i].second->pixel, nearest[i].second->facet);
-    return starts;
-}
-
-std::vector<SeveralOpticsImage> SeveralOpticsImages::images(const Vec3& point) const {
-    std::vector<Search> searches;
-    for (const History& history : histories_)
-        for (const auto& [pixel, facet] : starts(history, point))
-            searches.push_back({&history, pixel, facet, {}});
-    parallel_for(searches.size(), 1, [&](std::size_t from, std::size_t to) {
-        HistoryQuery query = history_query(world_, frame_, {}, point);
-        const History* asked = nullptr;
-        for (std::size_t i = from; i < to; ++i) {
-            Search& search = searches[i];
-            if (search.history != asked) query.history = search.history->chain;
-            asked = search.history;
-            search.exact = refine(query, search.start);
-        }
-    });
-
-    std::vector<SeveralOpticsImage> images;
-    for (const Search& search : searches) {
-        if (!search.exact) continue;
-        const History& history = *search.history;
-        SeveralOpticsImage image{history.path, history.steps[0].optic, search.facet, history.steps,
-                                 *search.exact};
-        const bool known = std::any_of(images.begin(), images.end(),
-                                       [&](const SeveralOpticsImage& one) { return same_image(one, image); });
-        if (!known) images.push_back(std::move(image));
-    }
-    return images;
 }
 
 }  // namespace trilens

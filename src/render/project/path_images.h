@@ -13,6 +13,7 @@
 #include "paths/facets/optic_paths.h"
 #include "paths/trace/follow.h"
 #include "render/frame/frame.h"
+#include "render/project/path_starts.h"
 #include "render/shoot/shoot.h"
 #include "specular/specular_point.h"
 #include "trilinear/points/point_images.h"
@@ -35,8 +36,9 @@ struct SeveralOpticsChoice {
 };
 
 /// Looks through all facets of one optic that lie on the film; where facets are traced, from the exact rays
-/// that pass nearest to the point. World and frame must outlive it. Thread-safe
-/// to read.
+/// that pass nearest to the point. Each start is led to a path of light by Newton's method, and an exact ray
+/// says whether the camera sees it; where a facet is proven to have one history none is asked. World and
+/// frame must outlive it. Thread-safe to read.
 class SeveralOpticsImages {
   public:
     SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic,
@@ -46,42 +48,48 @@ class SeveralOpticsImages {
     std::vector<SeveralOpticsImage> images(const Vec3& point) const;
 
   private:
+    /// Rays of traced parts that one search starts from.
+    static constexpr std::size_t kLoneStarts = 6;
+
     /// A film position in a part of a facet that has no corner rays, and where its path leaves the optics.
     struct LoneRay {
         Vec2 pixel{0};
         Id facet = kNone;
-        Ray exit;  // unit
+        Ray exit;          // unit
+        double reach = 0;  // pixels: the part lies within
+        bool may_be_on_film = true;
     };
     struct History {
         Path path = Path::kReflect;
         std::vector<Step> steps;
         std::vector<PathSegment> chain;
+        std::vector<Colours> colours;            // per step
         std::unique_ptr<MeshPointImages> seeds;  // null: no facet has it
         std::vector<Id> grid_facet;              // per facet of the seeds' mesh
+        std::vector<char> proven;                // likewise: all its rays have the history
         std::vector<LoneRay> lone;
         double most_light = 0;  // of any colour, at any corner or lone ray
+        // Made when first asked for: per facet of the seeds' mesh, and per lone ray.
+        std::unique_ptr<Lazy<FacetPaths>[]> facet_paths;
+        std::unique_ptr<Lazy<LonePath>[]> lone_paths;
+
+        Few<std::size_t, kLoneStarts> nearest_lone(const Vec3& point, bool off_film) const;
     };
 
     /// Histories told apart: a step after a place, kNone the beginning, is a place too.
     using StepFrom = std::tuple<Id, Id, Event>;
     using HistoryEnd = std::pair<Id, Colours>;  // its last place
 
-    /// A place where Newton's method begins, and where it ends.
-    struct Search {
-        const History* history = nullptr;
-        Vec2 start{0};
-        Id facet = kNone;
-        std::optional<HistoryImage> exact;
-    };
+    class Search;
 
     void add_nodes();
     void add_lone_rays();
     void add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed);
     std::vector<PathSegment> followed_from(const Vec2& pixel) const;
     History& history_of(const std::vector<PathSegment>& segments, Id last);
-    std::vector<std::pair<Vec2, Id>> starts(const History& history, const Vec3& point) const;
     void drop_histories();
-    std::optional<HistoryImage> refine(const HistoryQuery& query, const Vec2& start) const;
+    void get_ready();
+    std::vector<SeveralOpticsImage> images_over(const History& history, const Vec3& point) const;
 
     const World& world_;
     const Frame& frame_;
@@ -91,6 +99,7 @@ class SeveralOpticsImages {
     std::vector<History> histories_;
     std::map<StepFrom, Id> places_;
     std::map<HistoryEnd, std::size_t> history_at_;
+    SurfaceOf surface_of_;
 };
 
 // Where a point appears through the facets of one optic, each image then refined on the exact surface.

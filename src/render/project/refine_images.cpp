@@ -23,28 +23,6 @@ PathWorld materials_alone(const World& world) {
     return paths;
 }
 
-/// What a path over several optics carries; none where light cannot part so.
-std::optional<Vec3> weight_over_several(const PathWorld& paths, Media media, const Vec3& eye,
-                                        std::span<const PathEvent> events, const Vec3& point) {
-    Vec3 weight(1), from = eye;
-    Colours colours = kAllColours;
-    for (const PathEvent& event : events) {
-        const Vec3 way = event.point - from;
-        weight *= body_transmittance(paths, active_medium(paths, media), length(way));
-        const Meeting at{event.optic, normalize_or_zero(way), event.point, event.normal, event.front};
-        const Branch* taken = nullptr;
-        const std::vector<Branch> ways = branches(paths, at, media, colours);
-        for (const Branch& one : ways)  // of several colours green, the first of them
-            if (!taken && one.step.event == event.event) taken = &one;
-        if (!taken) return std::nullopt;
-        weight *= taken->weight;
-        media = taken->media;
-        colours = taken->colours;
-        from = event.point;
-    }
-    return weight * body_transmittance(paths, active_medium(paths, media), length(point - from));
-}
-
 /// Refines images of one camera.
 class ImageRefiner {
   public:
@@ -87,9 +65,9 @@ std::optional<Vec3> ImageRefiner::weight_of(std::span<const PathEvent> events, c
         const Path path = one.event == Event::kReflect ? Path::kReflect : Path::kRefract;
         return weight_over_one(world_, frame_, {one.optic, path, view, one.point, one.front, point});
     }
-    return weight_over_several(materials_,
-                               frame_.camera_media.none() ? Media() : frame_.camera_media.of(view),
-                               view.origin, events, point);
+    return weight_over_several(
+        materials_,
+        {frame_.camera_media.none() ? Media() : frame_.camera_media.of(view), view.origin, events, point});
 }
 
 bool ImageRefiner::is_visible(const WorldImage& image, const Vec3& eye, const Vec3& point) const {

@@ -139,7 +139,7 @@ std::vector<double> inverse_of(const ChainHessian& hessian, std::size_t size) {
     std::vector<Vec2> unit(size / 2, Vec2(0));
     for (std::size_t column = 0; column < size; ++column) {
         unit[column / 2][static_cast<int>(column % 2)] = 1;
-        const std::vector<Vec2> solved = hessian.solve(unit);
+        const PerEvent<Vec2> solved = hessian.solve(unit);
         unit[column / 2] = Vec2(0);
         for (std::size_t row = 0; row < size; ++row)
             inverse[row * size + column] = solved[row / 2][static_cast<int>(row % 2)];
@@ -150,7 +150,8 @@ std::vector<double> inverse_of(const ChainHessian& hessian, std::size_t size) {
 /// A system of linear equations, its matrix known up to radii, and an approximate inverse.
 struct BoundedSystem {
     std::size_t size = 0;
-    std::vector<double> matrix, radii, inverse;
+    ChainMatrix matrix;
+    std::vector<double> radii, inverse;
 
     /// How far one row of inverse times matrix may be from that of the unit matrix, times the half sides.
     double spread(std::size_t row, std::span<const Vec2> half) const {
@@ -196,7 +197,7 @@ bool holds_one_path(const PathChain& chain, const ChainBox& box) {
     const std::size_t size = 2 * chain.events.size();
     const BoundedSystem system{size, chain_second_derivatives(chain, bend, known.middle), radii_of(known),
                                inverse_of(hessian, size)};
-    const std::vector<Vec2> law = chain_law(bend, known.middle);
+    const PerEvent<Vec2> law = chain_law(bend, known.middle);
     const std::vector<double> rounding = law_rounding(known);
 
     // From the middle, every zero lies within spread + rounding of Newton's step; if that is inside the boxes

@@ -20,11 +20,11 @@ double index_along(const PathChain& chain, std::size_t stretch) {
     return stretch == 0 ? chain.events[0].index_before : chain.events[stretch - 1].index_after;
 }
 
-ChainShape shape_at(const PathChain& chain, std::vector<SurfaceParameter> at) {
+ChainShape shape_at(const PathChain& chain, std::span<const SurfaceParameter> at) {
     ChainShape shape;
+    shape.at.assign(at.begin(), at.end());
     for (std::size_t i = 0; i < at.size(); ++i)
         shape.points.push_back(chain.events[i].surface->eval(at[i].face, at[i].uv));
-    shape.at = std::move(at);
     return shape;
 }
 
@@ -68,10 +68,10 @@ ChainBend chain_bend(const PathChain& chain, std::span<const SurfacePoint> point
     return bend;
 }
 
-std::vector<Vec2> chain_law(const ChainBend& bend, std::span<const SurfacePoint> points) {
-    std::vector<Vec2> law;
+PerEvent<Vec2> chain_law(const ChainBend& bend, std::span<const SurfacePoint> points) {
+    PerEvent<Vec2> law;
     for (std::size_t i = 0; i < points.size(); ++i)
-        law.emplace_back(dot(bend.bend[i], points[i].du), dot(bend.bend[i], points[i].dv));
+        law.push_back({dot(bend.bend[i], points[i].du), dot(bend.bend[i], points[i].dv)});
     return law;
 }
 
@@ -94,11 +94,11 @@ bool chain_sides_fit(const PathChain& chain, const ChainBend& bend, std::span<co
     return true;
 }
 
-std::vector<double> chain_second_derivatives(const PathChain& chain, const ChainBend& bend,
-                                             std::span<const SurfacePoint> points) {
+ChainMatrix chain_second_derivatives(const PathChain& chain, const ChainBend& bend,
+                                     std::span<const SurfacePoint> points) {
     TRILENS_CHECK(points.size() == chain.events.size(), "a point for each event");
     const std::size_t size = 2 * points.size();
-    std::vector<double> matrix(size * size, 0.0);
+    ChainMatrix matrix(size * size, 0.0);
     const auto at = [&](std::size_t row, std::size_t column) -> double& {
         return matrix[row * size + column];
     };
@@ -152,9 +152,9 @@ void ChainHessian::factor() {
     }
 }
 
-std::vector<Vec2> ChainHessian::solve(std::span<const Vec2> right) const {
+PerEvent<Vec2> ChainHessian::solve(std::span<const Vec2> right) const {
     TRILENS_CHECK(is_regular_ && 2 * right.size() == size_, "a regular system of this size");
-    std::vector<double> x(size_);
+    Few<double, 2 * kFewEvents> x(size_);
     for (std::size_t i = 0; i < size_; ++i) x[i] = right[i / 2][static_cast<int>(i % 2)];
     for (std::size_t c = 0; c < size_; ++c) {
         std::swap(x[c], x[pivot_[c]]);
@@ -164,8 +164,8 @@ std::vector<Vec2> ChainHessian::solve(std::span<const Vec2> right) const {
         for (std::size_t c = r + 1; c < std::min(size_, r + 7); ++c) x[r] -= at(r, c) * x[c];
         x[r] /= at(r, r);
     }
-    std::vector<Vec2> solution;
-    for (std::size_t i = 0; i < right.size(); ++i) solution.emplace_back(x[2 * i], x[2 * i + 1]);
+    PerEvent<Vec2> solution;
+    for (std::size_t i = 0; i < right.size(); ++i) solution.push_back({x[2 * i], x[2 * i + 1]});
     return solution;
 }
 
@@ -177,7 +177,7 @@ PathSensitivity::PathSensitivity(const PathChain& chain, std::span<const Surface
     if (!is_regular_) return;
     const std::size_t last = points.size() - 1;
     for (std::size_t axis = 0; axis < 2; ++axis) {
-        std::vector<Vec2> right(points.size(), Vec2(0));
+        PerEvent<Vec2> right(points.size(), Vec2(0));
         right[0] = {dot(slope[axis], points[0].du), dot(slope[axis], points[0].dv)};
         lambda_[axis] = hessian.solve(right);
         // F of the last event changes by -H_k dX along its tangents; at infinity the way itself turns by dX.
@@ -204,18 +204,18 @@ struct ChainIterate {
     double residual = std::numeric_limits<double>::infinity();
 };
 
-ChainIterate iterate_at(const PathChain& chain, std::vector<SurfaceParameter> at) {
+ChainIterate iterate_at(const PathChain& chain, std::span<const SurfaceParameter> at) {
     ChainIterate iterate;
-    iterate.shape = shape_at(chain, std::move(at));
+    iterate.shape = shape_at(chain, at);
     iterate.bend = chain_bend(chain, iterate.shape.points);
     iterate.residual = chain_residual(iterate.bend, iterate.shape.points);
     return iterate;
 }
 
 /// The parameters after a step, each kept on its face or carried over to the next one.
-std::vector<SurfaceParameter> stepped(const PathChain& chain, const ChainIterate& now,
-                                      std::span<const Vec2> step, const FindParameter& find) {
-    std::vector<SurfaceParameter> at = now.shape.at;
+PerEvent<SurfaceParameter> stepped(const PathChain& chain, const ChainIterate& now,
+                                   std::span<const Vec2> step, const FindParameter& find) {
+    PerEvent<SurfaceParameter> at = now.shape.at;
     for (std::size_t i = 0; i < at.size(); ++i) {
         const Vec2 wanted = at[i].uv + step[i];
         const Vec2 uv = clamped_to(chain.events[i].surface->domain(at[i].face), wanted);
@@ -243,15 +243,15 @@ double largest_step(std::span<const Vec2> step) {
 std::optional<ChainShape> solve_chain(const PathChain& chain, std::span<const SurfaceParameter> start,
                                       const FindParameter& find) {
     TRILENS_CHECK(!chain.events.empty() && start.size() == chain.events.size(), "a start for each event");
-    ChainIterate now = iterate_at(chain, {start.begin(), start.end()});
+    ChainIterate now = iterate_at(chain, start);
     bool solved = false;
     for (int i = 0; i < kMostChainSteps && std::isfinite(now.residual); ++i) {
         const bool was_solved = now.residual <= chain_floor(chain, now.bend, now.shape);
         const ChainHessian hessian(chain, now.bend, now.shape.points);
         if (!hessian.is_regular()) break;
-        std::vector<Vec2> law = chain_law(now.bend, now.shape.points);
+        PerEvent<Vec2> law = chain_law(now.bend, now.shape.points);
         for (Vec2& f : law) f = -f;
-        std::vector<Vec2> step = hessian.solve(law);
+        PerEvent<Vec2> step = hessian.solve(law);
         double size = largest_step(step);
         if (!std::isfinite(size)) break;
         if (size > kChainReach) {

@@ -9,8 +9,20 @@
 #include <vector>
 
 #include "base/raymesh/surface.h"
+#include "base/util/few.h"
 
 namespace trilens {
+
+/// Paths over so many surfaces need no memory of their own.
+inline constexpr std::size_t kFewEvents = 6;
+/// Something of each event of a chain.
+template <typename T>
+using PerEvent = Few<T, kFewEvents>;
+/// Something of each stretch, one more than events.
+template <typename T>
+using PerStretch = Few<T, kFewEvents + 1>;
+/// A matrix of two rows and columns per event, row by row.
+using ChainMatrix = Few<double, 4 * kFewEvents * kFewEvents>;
 
 /// An end of a light path, world frame: a point, or one at infinity.
 struct ChainEnd {
@@ -29,13 +41,13 @@ struct ChainEvent {
 /// A path from the eye over surfaces to a point.
 struct PathChain {
     ChainEnd eye, point;
-    std::vector<ChainEvent> events;  // at least one
+    PerEvent<ChainEvent> events;  // at least one
 };
 
 /// A path's shape: where it meets each surface.
 struct ChainShape {
-    std::vector<SurfaceParameter> at;
-    std::vector<SurfacePoint> points;  // there
+    PerEvent<SurfaceParameter> at;
+    PerEvent<SurfacePoint> points;  // there
 };
 
 /// What the optical path's first derivatives are made of. With P_0 the eye, P_1 .. P_k the events and
@@ -43,23 +55,23 @@ struct ChainShape {
 /// event is g_i = n_(i-1) e_(i-1) - n_i e_i; the path is one of light (Fermat) where g_i is along the normal:
 /// g_i . du = g_i . dv = 0.
 struct ChainBend {
-    std::vector<Vec3> way;       // e_0 .. e_k
-    std::vector<double> length;  // of each stretch, scene units; infinite at an end at infinity
-    std::vector<Vec3> bend;      // g_1 .. g_k
+    PerStretch<Vec3> way;       // e_0 .. e_k
+    PerStretch<double> length;  // of each stretch, scene units; infinite at an end at infinity
+    PerEvent<Vec3> bend;        // g_1 .. g_k
 };
 
 ChainBend chain_bend(const PathChain& chain, std::span<const SurfacePoint> points);
 
 /// F: (g_i . du, g_i . dv) of every event.
-std::vector<Vec2> chain_law(const ChainBend& bend, std::span<const SurfacePoint> points);
+PerEvent<Vec2> chain_law(const ChainBend& bend, std::span<const SurfacePoint> points);
 
 /// The largest part of a bend that lies along its surface: 0 for light; in 0 .. n_before + n_after.
 double chain_residual(const ChainBend& bend, std::span<const SurfacePoint> points);
 
 /// The second derivatives of the optical path in the events' parameters, two per event: a full matrix, row by
 /// row, symmetric and block tridiagonal.
-std::vector<double> chain_second_derivatives(const PathChain& chain, const ChainBend& bend,
-                                             std::span<const SurfacePoint> points);
+ChainMatrix chain_second_derivatives(const PathChain& chain, const ChainBend& bend,
+                                     std::span<const SurfacePoint> points);
 
 /// chain_second_derivatives(), factored.
 /// Solves A x = b by Gaussian elimination with partial pivoting inside the band.
@@ -70,7 +82,7 @@ class ChainHessian {
     /// False at a caustic, where the path is no function of what it depends on.
     bool is_regular() const { return is_regular_; }
     /// `right`: two numbers per event.
-    std::vector<Vec2> solve(std::span<const Vec2> right) const;
+    PerEvent<Vec2> solve(std::span<const Vec2> right) const;
 
   private:
     double& at(std::size_t row, std::size_t column) { return matrix_[row * size_ + column]; }
@@ -78,8 +90,8 @@ class ChainHessian {
     void factor();
 
     std::size_t size_ = 0;
-    std::vector<double> matrix_;
-    std::vector<std::size_t> pivot_;
+    ChainMatrix matrix_;
+    Few<std::size_t, 2 * kFewEvents> pivot_;
     bool is_regular_ = true;
 };
 
@@ -101,7 +113,7 @@ class PathSensitivity {
 
   private:
     bool is_regular_ = false;
-    std::array<std::vector<Vec2>, 2> lambda_;  // A^-1 of how x, and y, move with the places
+    std::array<PerEvent<Vec2>, 2> lambda_;  // A^-1 of how x, and y, move with the places
     std::array<Vec3, 2> by_point_{};
 };
 

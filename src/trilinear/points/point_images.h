@@ -105,6 +105,12 @@ class MeshPointImages {
     /// The same for many points, in parallel.
     PointImageLists images(std::span<const Vec3> points) const;
 
+    /// A facet's corners on the screen, homogeneous.
+    std::array<Vec3, 3> screen_corners(Id facet) const {
+        const IdTriple& c = corners_[facet];
+        return {screen_[c[0]], screen_[c[1]], screen_[c[2]]};
+    }
+
   private:
     // All rays of the facets below a node lie in the union of balls about center + s * axis of radius
     // radius + s * spread, s >= 0: a rounded cone.

@@ -1,0 +1,131 @@
+// Images over several optics: what Newton's method settles is what exact rays say, where none is asked as
+// well.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "laws/worlds.h"
+#include "render/frame/image_chain.h"
+#include "render/project/project.h"
+#include "scene/load.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+constexpr const char* kFront = R"({ "version": 1, "film": { "width": 48, "height": 36 },
+  "cameras": [ { "name": "c", "type": "perspective", "yfov": 40,
+                 "lookAt": { "eye": [0.2, 0.3, 4.5], "at": [0, 0, 0] } } ],
+  "render": { "maxDepth": 2 },
+  "materials": [ { "name": "glass", "transmissionFactor": 1, "ior": 1.52 },
+                 { "name": "water", "transmissionFactor": 1, "ior": 1.335 },
+                 { "name": "chrome", "metallicFactor": 1, "roughnessFactor": 0 } ],
+  "meshes": [ )";
+
+std::string box(const char* name, const char* material, const Vec3& low, const Vec3& high,
+                const char* more = "") {
+    std::string points;
+    for (const double z : {low.z, high.z})
+        for (const Vec2& p :
+             {Vec2(low.x, low.y), Vec2(high.x, low.y), Vec2(high.x, high.y), Vec2(low.x, high.y)})
+            points += (points.empty() ? "[" : ",[") + std::to_string(p.x) + "," + std::to_string(p.y) + "," +
+                      std::to_string(z) + "]";
+    return std::string(R"({ "name": ")") + name + R"(", "role": "optic", "material": ")" + material +
+           R"(", "points": [)" + points +
+           R"(], "faceVertexCounts": [4,4,4,4,4,4], "subdivisionScheme": "bilinear", "resolution": 4,
+             "faceVertexIndices": [0,3,2,1, 4,5,6,7, 0,1,5,4, 2,3,7,6, 0,4,7,3, 1,2,6,5])" +
+           more + "}";
+}
+
+std::string ball(const char* name, const char* material, const Vec3& c, double radius) {
+    return std::string(R"({ "name": ")") + name + R"(", "role": "optic", "resolution": 8, "material": ")" +
+           material + R"(", "primitive": { "type": "sphere", "center": [)" + std::to_string(c.x) + "," +
+           std::to_string(c.y) + "," + std::to_string(c.z) + R"(], "radius": )" + std::to_string(radius) +
+           "} }";
+}
+
+std::shared_ptr<const World> world_of(const std::string& meshes) {
+    return make_world(load_scene_text(kFront + meshes + "] }", SceneSource("test", ""), {}, {}), ignore);
+}
+
+/// A flat port; the same tilted, so that rays reflect totally in it; balls of glass and chrome; a chrome box
+/// that hides part of what lies behind a window; a smooth body of glass.
+std::vector<std::shared_ptr<const World>> worlds_of_several() {
+    const std::string port = box("port", "glass", {-2, -2, 3.2}, {2, 2, 3.5});
+    return {
+        world_of(port + "," + box("water", "water", {-30, -30, -30}, {30, 30, 3.2})),
+        world_of(box("port", "glass", {-1, -0.8, -0.2}, {1, 0.8, 0.3},
+                     R"(, "transform": { "rotate": [0.1, 0.55, 0.1, 0.8] })")),
+        world_of(ball("clear", "glass", {0.7, -0.2, 0.5}, 0.7) + "," +
+                 ball("bright", "chrome", {-0.8, 0, -0.6}, 0.8)),
+        world_of(port + "," + box("screen", "chrome", {-0.6, -0.5, 1}, {0.2, 0.4, 1.4})),
+        world_of(box("pebble", "glass", {-1, -0.8, -1}, {1, 0.8, 0.6},
+                     R"(, "creaseIndices": [4,5], "creaseLengths": [2], "creaseSharpnesses": [1.5])")),
+    };
+}
+
+std::vector<Vec3> points_around(std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < count; ++i)
+        points.emplace_back(2.2 * draw(random), 1.6 * draw(random), 4 * draw(random) - 1.5);
+    return points;
+}
+
+}  // namespace
+
+TEST_CASE("images over several optics lie where exact rays pass through their points", "[laws][law]") {
+    std::size_t compared = 0, longest = 0;
+    const std::vector<Vec3> points = points_around(40, 3);
+    for (const auto& world : worlds_of_several()) {
+        ProjectRequest request;
+        const Frame frame = make_frame(*world, request.frame, {});
+        const std::vector<PointProjection> found = project_points(*world, request, points);
+        std::size_t in_world = 0;
+        for (std::size_t p = 0; p < points.size(); ++p)
+            for (const WorldImage& image : found[p].images) {
+                if (image.steps.size() < 2 || image.events.empty()) continue;
+                HistoryQuery query = history_query(*world, frame, image.steps, points[p]);
+                const std::optional<HistoryImage> exact = history_image_at(query, image.pixel);
+                CAPTURE(p, image.steps.size(), image.pixel.x, image.pixel.y);
+                REQUIRE(exact);
+                REQUIRE(exact->events.size() == image.events.size());
+                for (std::size_t i = 0; i < image.events.size(); ++i) {
+                    CHECK(exact->events[i].face == image.events[i].face);
+                    CHECK(exact->events[i].front == image.events[i].front);
+                    CHECK(length(exact->events[i].point - image.events[i].point) < 1e-9);
+                }
+                CHECK(length(exact->weight - image.weight) < 1e-9);
+                CHECK(exact->distance == Approx(image.length).epsilon(1e-9));
+                // What the ray misses the point by, in pixels.
+                const double steep = std::hypot(length(image.derivative[0]), length(image.derivative[1]));
+                CHECK(exact->residual * steep < 1e-8);
+                longest = std::max(longest, image.steps.size());
+                ++in_world;
+            }
+        CHECK(in_world > 2);
+        compared += in_world;
+    }
+    INFO(compared << " images, of " << longest << " events at most");
+    CHECK(compared > 200);
+    CHECK(longest >= 3);
+}
+
+TEST_CASE("a point alone has the images that it has among others, whatever was asked before", "[laws][law]") {
+    const std::vector<Vec3> points = points_around(16, 5);
+    for (const auto& world : worlds_of_several()) {
+        const std::vector<PointProjection> among = project_points(*world, {}, points);
+        for (std::size_t p = 0; p < points.size(); p += 11) {
+            const PointProjection alone = project_points(*world, {}, {&points[p], 1})[0];
+            REQUIRE(alone.images.size() == among[p].images.size());
+            for (std::size_t i = 0; i < alone.images.size(); ++i) {
+                CHECK(alone.images[i].pixel == among[p].images[i].pixel);
+                CHECK(alone.images[i].weight == among[p].images[i].weight);
+            }
+        }
+    }
+}
