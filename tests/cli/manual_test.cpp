@@ -39,7 +39,7 @@ std::string offered_by_bash(const std::string& script, const std::string& words)
 
 TEST_CASE("there is a page for every command, and one command prints it", "[cli][manual]") {
     const std::string folder = scratch_dir("cli_manual_pages");
-    CHECK(written_pages(folder).size() == 35);
+    CHECK(written_pages(folder).size() == 36);
     CHECK(bytes_of(folder + "/trilens-sweep-run.1") == run_trilens("man sweep run").out);
     const std::string page = bytes_of(folder + "/trilens-render.1");
     for (const char* words : {".TH TRILENS\\-RENDER 1", "\\fB\\-n\\fR, \\fB\\-\\-resolution\\fR \\fIN\\fR",
