@@ -7,16 +7,23 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESControl_Reader.hxx>
+#include <IGESGeom_TrimmedSurface.hxx>
+#include <IGESSolid_Face.hxx>
+#include <Interface_InterfaceModel.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
+#include <NCollection_DataMap.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <StepGeom_CartesianPoint.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_FaceSurface.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_MapOfShape.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 #include <TransferBRep.hxx>
@@ -24,9 +31,11 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <memory>
 
 #include "cad/cad_surfaces.h"
@@ -51,11 +60,48 @@ std::unique_ptr<XSControl_Reader> reader_of(const std::string& file) {
     throw InputError(file, "", "is neither STEP (.step, .stp) nor IGES (.iges, .igs)");
 }
 
-/// What a STEP file calls the body; empty: nothing.
-std::string name_of_shape(const XSControl_Reader& reader, const TopoDS_Shape& shape) {
-    const Handle(Standard_Transient) entity = reader.WS()->TransferReader()->EntityFromShapeResult(shape, 3);
-    const auto item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
-    return item.IsNull() || item->Name().IsNull() ? "" : item->Name()->ToCString();
+using ShapeNames =
+    NCollection_DataMap<TopoDS_Shape, Handle(TCollection_HAsciiString), TopTools_ShapeMapHasher>;
+
+/// What a STEP file calls the bodies that came of its solids, shells and faces.
+ShapeNames find_names(const XSControl_Reader& reader) {
+    const Handle(Interface_InterfaceModel) model = reader.Model();
+    const Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
+    ShapeNames names;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto item = Handle(StepRepr_RepresentationItem)::DownCast(model->Value(i));
+        if (item.IsNull() || item->Name().IsNull() || item->Name()->IsEmpty()) continue;
+        const TopoDS_Shape shape = TransferBRep::ShapeResult(process, item);
+        if (!shape.IsNull()) names.Bind(shape.Located(TopLoc_Location()), item->Name());
+    }
+    return names;
+}
+
+/// Coordinates of scenes go no further.
+constexpr double kLargest = 1e30;
+
+/// Before anything is made of them: with an infinite one OpenCASCADE comes to no end.
+void check_points(const XSControl_Reader& reader, const std::string& file) {
+    const Handle(Interface_InterfaceModel) model = reader.Model();
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto point = Handle(StepGeom_CartesianPoint)::DownCast(model->Value(i));
+        for (int k = 1; !point.IsNull() && k <= point->NbCoordinates(); ++k)
+            if (!(std::fabs(point->CoordinatesValue(k)) < kLargest))
+                throw InputError(file, "", "goes beyond coordinates of 1e30");
+    }
+}
+
+/// Faces that the file speaks of.
+std::size_t count_faces(const XSControl_Reader& reader) {
+    const Handle(Interface_InterfaceModel) model = reader.Model();
+    std::size_t count = 0;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const Handle(Standard_Transient) entity = model->Value(i);
+        count += entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) ||
+                 entity->IsKind(STANDARD_TYPE(IGESSolid_Face)) ||
+                 entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface));
+    }
+    return count;
 }
 
 void set_triangles(const TopoDS_Face& face, CadFace& into) {
@@ -80,35 +126,38 @@ void set_triangles(const TopoDS_Face& face, CadFace& into) {
 }
 
 struct Reading {
-    const XSControl_Reader& reader;
-    const std::string& file;
-    std::vector<CadBody> bodies{};
-    TopTools_MapOfShape known{};  // what is in one of them
+    ShapeNames names;
+    CadModel model{};
+    TopTools_MapOfShape known{};  // what is in one of the bodies
 
     void add_body(const TopoDS_Shape& shape) {
-        CadBody body{name_of_shape(reader, shape), shape.ShapeType() == TopAbs_SOLID, {}};
-        if (body.name.empty()) body.name = "body " + std::to_string(bodies.size() + 1);
+        const bool is_solid = shape.ShapeType() == TopAbs_SOLID;
+        const Handle(TCollection_HAsciiString)* const name = names.Seek(shape.Located(TopLoc_Location()));
+        CadBody body{
+            name ? (*name)->ToCString() : "body " + std::to_string(model.bodies.size() + 1), is_solid, {}};
         for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
-            if (!known.Add(at.Current())) continue;
+            if (!known.Add(at.Current()) && !is_solid) continue;  // solids may share one
             CadFace& face = body.faces.emplace_back();
-            set_surfaces(TopoDS::Face(at.Current()), file, face);
+            set_surfaces(TopoDS::Face(at.Current()), face);
             set_triangles(TopoDS::Face(at.Current()), face);
         }
-        if (!body.faces.empty()) bodies.push_back(std::move(body));
+        if (!body.faces.empty()) model.bodies.push_back(std::move(body));
     }
 };
 
-void mesh_finely(const TopoDS_Shape& shape, double deviation) {
+void mesh_finely(const TopoDS_Shape& shape, const std::string& file, double deviation) {
     Bnd_Box box;
     BRepBndLib::Add(shape, box);
     if (box.IsVoid()) return;
+    if (!(box.SquareExtent() < kLargest * kLargest))
+        throw InputError(file, "", "goes beyond coordinates of 1e30");
     const double size = std::sqrt(box.SquareExtent());
     BRepMesh_IncrementalMesh(shape, std::max(deviation * size, 1e-12), false, kMostTurn, false);
 }
 
 }  // namespace
 
-std::vector<CadBody> read_cad_file(const std::string& file, double deviation) {
+CadModel read_cad_file(const std::string& file, double deviation) {
     // It would write to standard output.
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
     const auto reader = reader_of(file);
@@ -116,15 +165,21 @@ std::vector<CadBody> read_cad_file(const std::string& file, double deviation) {
     try {
         if (reader->ReadFile(file.c_str()) != IFSelect_RetDone)
             throw InputError(file, "", "cannot be read: what is in it is not what its name says");
+        check_points(*reader, file);
         reader->TransferRoots();
         const TopoDS_Shape all = reader->OneShape();
         if (all.IsNull()) throw InputError(file, "", "has no face");
-        mesh_finely(all, deviation);
-        Reading reading{*reader, file};
+        mesh_finely(all, file, deviation);
+        Reading reading{find_names(*reader)};
         for (const TopAbs_ShapeEnum kind : {TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE})
             for (TopExp_Explorer at(all, kind); at.More(); at.Next()) reading.add_body(at.Current());
-        if (reading.bodies.empty()) throw InputError(file, "", "has no face");
-        return std::move(reading.bodies);
+        if (reading.model.bodies.empty()) throw InputError(file, "", "has no face");
+        const std::size_t asked = count_faces(*reader),
+                          made = static_cast<std::size_t>(reading.known.Extent());
+        if (made < asked)
+            reading.model.warnings.push_back(std::to_string(asked - made) + " of " + std::to_string(asked) +
+                                             " faces are left out: OpenCASCADE makes nothing of them");
+        return std::move(reading.model);
     } catch (const Standard_Failure& failure) {
         throw InputError(file, "", std::string("cannot be read: ") + failure.GetMessageString());
     }

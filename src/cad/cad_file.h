@@ -20,8 +20,9 @@ struct CadSurface {
     std::array<std::vector<double>, 2> knots;
 };
 
-/// A face, its front outwards of its body.
+/// A face; of a solid its front is outwards.
 struct CadFace {
+    std::string fault;                 // why no surfaces could be made of it; empty: they were
     std::vector<CadSurface> surfaces;  // a flat face that is no rectangle has one per side
     double covered = 1;                // of the surfaces' area what the face has: below 1 where it is trimmed
     std::vector<Vec3> points;          // of its triangles, which keep its trims
@@ -34,10 +35,15 @@ struct CadBody {
     std::vector<CadFace> faces;
 };
 
-/// What a file has: its solids, then its shells and faces that are in none, in the file's order and unit of
-/// length (millimetres, where it says none). `deviation`: how far triangles may lie off their face, as a
+struct CadModel {
+    std::vector<CadBody> bodies;
+    std::vector<std::string> warnings;  // of what was left out
+};
+
+/// What a file has: its solids, then its shells and faces that are in none, in the file's order, in
+/// millimetres. `deviation`: how far triangles may lie off their face, as a
 /// share of the file's size, above 0. Throws InputError with the file's name where it cannot be read, is
-/// neither STEP (.step, .stp) nor IGES (.iges, .igs), or has no face.
-std::vector<CadBody> read_cad_file(const std::string& file, double deviation);
+/// neither STEP (.step, .stp) nor IGES (.iges, .igs), has no face, or goes beyond 1e30.
+CadModel read_cad_file(const std::string& file, double deviation);
 
 }  // namespace trilens

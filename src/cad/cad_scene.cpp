@@ -19,7 +19,7 @@ enum class CadRole { kObject, kMirror, kGlass };
 
 bool fits(const std::string& name, const std::vector<std::string>& patterns) {
     return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-        return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+        return pattern == name || fnmatch(pattern.c_str(), name.c_str(), FNM_NOESCAPE) == 0;
     });
 }
 
@@ -47,7 +47,10 @@ struct Bounds {
 
 class SceneOfCad {
   public:
-    SceneOfCad(const std::vector<CadBody>& bodies, const CadOptions& options) : options_(options) {
+    SceneOfCad(const CadModel& model, const CadOptions& options) : options_(options) {
+        const std::vector<CadBody>& bodies = model.bodies;
+        for (const std::string& warning : model.warnings)
+            made_.warnings.push_back(options.file + ": " + warning);
         check_patterns(bodies);
         for (const CadBody& body : bodies) add(body);
         finish(bodies);
@@ -99,6 +102,8 @@ class SceneOfCad {
         Json patches = Json::array();
         for (std::size_t i = 0; i < body.faces.size(); ++i) {
             const CadFace& face = body.faces[i];
+            if (!face.fault.empty())
+                throw InputError(options_.file, body.name, fmt::format("face {}: {}", i + 1, face.fault));
             if (face.covered < 1)
                 made_.warnings.push_back(fmt::format(
                     "{}: {}: face {} is trimmed to {:.3g} % of its surface, all of which is shown",
@@ -209,8 +214,8 @@ class SceneOfCad {
 
 }  // namespace
 
-CadScene scene_of_cad(const std::vector<CadBody>& bodies, const CadOptions& options) {
-    return SceneOfCad(bodies, options).take();
+CadScene scene_of_cad(const CadModel& model, const CadOptions& options) {
+    return SceneOfCad(model, options).take();
 }
 
 }  // namespace trilens

@@ -17,7 +17,7 @@ struct CadScene {
 
 /// z is up, as in the files. Names are made different. Warns of faces that an optic shows more of than they
 /// have. Throws InputError with the file's name where a pattern fits no body, a body is to be mirror and
-/// glass, or an optic's face has a degree that no patch has.
-CadScene scene_of_cad(const std::vector<CadBody>& bodies, const CadOptions& options);
+/// glass, or an optic's face has a fault, or a degree that no patch has.
+CadScene scene_of_cad(const CadModel& model, const CadOptions& options);
 
 }  // namespace trilens

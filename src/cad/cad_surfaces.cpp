@@ -1,7 +1,5 @@
 #include "cad/cad_surfaces.h"
 
-#include <trilens/error.h>
-
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -81,13 +79,18 @@ Handle(Geom_BSplineCurve) curve_of(const TopoDS_Edge& edge, bool reversed) {
 
 using SideCurves = std::vector<Handle(Geom_BSplineCurve)>;
 
-/// Of a face that is not reversed, or as if it were. None where one has no curve in space.
+/// Of a face that is not reversed, or as if it were. None where one has no curve in space, or does not meet
+/// the next.
 std::optional<SideCurves> curves_of(const TopoDS_Wire& wire, const TopoDS_Face& face, bool reversed) {
     SideCurves curves;
     for (BRepTools_WireExplorer at(wire, face); at.More(); at.Next()) {
         curves.push_back(curve_of(at.Current(), reversed));
         if (curves.back().IsNull()) return std::nullopt;
     }
+    // The explorer stops where sides do not meet.
+    std::size_t sides = 0;
+    for (TopExp_Explorer at(wire, TopAbs_EDGE); at.More(); at.Next()) ++sides;
+    if (curves.size() != sides) return std::nullopt;
     return curves;
 }
 
@@ -179,11 +182,15 @@ std::vector<CadSurface> flat_surfaces(const TopoDS_Face& oriented) {
 
 }  // namespace
 
-void set_surfaces(const TopoDS_Face& face, const std::string& file, CadFace& into) {
+void set_surfaces(const TopoDS_Face& face, CadFace& into) {
     try {
         double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
         BRepTools::UVBounds(face, u0, u1, v0, v1);
         const Handle(Geom_Surface) whole = BRep_Tool::Surface(face);
+        if (whole.IsNull()) {
+            into.fault = "it has no surface";
+            return;
+        }
         into.covered = area_of(face) / area_of(BRepBuilderAPI_MakeFace(whole, u0, u1, v0, v1, 1e-9).Face());
         if (!(into.covered < 1 - kWhole)) into.covered = 1;
         if (into.covered < 1 && BRepAdaptor_Surface(face).GetType() == GeomAbs_Plane) {
@@ -197,9 +204,8 @@ void set_surfaces(const TopoDS_Face& face, const std::string& file, CadFace& int
         into.surfaces = {
             surface_of(GeomConvert::SurfaceToBSplineSurface(cut), face.Orientation() == TopAbs_REVERSED)};
     } catch (const Standard_Failure& failure) {
-        throw InputError(
-            file, "",
-            std::string("a face of which no NURBS surface can be made: ") + failure.GetMessageString());
+        into.surfaces.clear();
+        into.fault = std::string("no NURBS surface can be made of it: ") + failure.GetMessageString();
     }
 }
 

@@ -7,8 +7,8 @@ class TopoDS_Face;
 
 namespace trilens {
 
-/// The surfaces of a face and how much of them it covers. Exact but for offset surfaces, which OpenCASCADE
-/// approximates. Throws InputError(file) where it makes none.
-void set_surfaces(const TopoDS_Face& face, const std::string& file, CadFace& into);
+/// The surfaces of a face and how much of them it covers, or its fault. Exact but for offset surfaces, which
+/// OpenCASCADE approximates.
+void set_surfaces(const TopoDS_Face& face, CadFace& into);
 
 }  // namespace trilens

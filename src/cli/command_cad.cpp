@@ -1,4 +1,5 @@
 // trilens cad: starts the program that makes scenes of STEP and IGES files.
+#include <memory>
 #include <utility>
 
 #include "cli/cad_options.h"

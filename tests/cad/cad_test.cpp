@@ -13,6 +13,7 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRep_Builder.hxx>
 #include <GC_MakeArcOfCircle.hxx>
 #include <GeomAPI_PointsToBSplineSurface.hxx>
 #include <Geom_BSplineSurface.hxx>
@@ -22,6 +23,7 @@
 #include <Message_Printer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TColgp_Array2OfPnt.hxx>
+#include <TopoDS_Compound.hxx>
 #include <gp_Circ.hxx>
 
 #include <cmath>
@@ -49,8 +51,7 @@ struct Draw {
 };
 
 std::string file_named(const std::string& name) {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "trilens-cad-test";
-    std::filesystem::create_directories(folder);
+    static const std::filesystem::path folder = scratch_dir("cad");
     return (folder / name).string();
 }
 
@@ -71,7 +72,9 @@ std::string written(const TopoDS_Shape& shape, const std::string& name) {
 }
 
 std::vector<CadBody> read_back(const TopoDS_Shape& shape, const std::string& name) {
-    return read_cad_file(written(shape, name), 1e-3);
+    const CadModel model = read_cad_file(written(shape, name), 1e-3);
+    CHECK(model.warnings == std::vector<std::string>{});
+    return model.bodies;
 }
 
 /// By the Cox-de Boor recurrence, straight from its definition.
@@ -262,7 +265,7 @@ TEST_CASE("a trimmed face says so, and keeps its trims as triangles", "[cad]") {
     const TopoDS_Face half = BRepBuilderAPI_MakeFace(sheet, u0, 0.5 * (u0 + u1), v0, v1, 1e-6);
     // A part between parameters is a surface of its own, and whole.
     CHECK(read_back(half, "half.step").at(0).faces.at(0).covered == 1);
-    CHECK(scene_of_cad(uncut, asked("sheet.step")).warnings.empty());
+    CHECK(scene_of_cad({uncut, {}}, asked("sheet.step")).warnings.empty());
 
     const gp_Ax2 through(gp_Pnt(4, 4, -5), gp::DZ());
     const TopoDS_Shape cut =
@@ -277,7 +280,7 @@ TEST_CASE("a trimmed face says so, and keeps its trims as triangles", "[cad]") {
         // The disk, seen from above, is nearly as large on the sheet, which lies flat there.
         CHECK(std::fabs((1 - face.covered) * all / (2.25 * std::numbers::pi) - 1) < 0.05);
         CHECK(std::fabs(area_of_triangles(face) / (face.covered * all) - 1) < 0.01);
-        const CadScene made = scene_of_cad(bodies, asked(name));
+        const CadScene made = scene_of_cad({bodies, {}}, asked(name));
         REQUIRE(made.warnings.size() == 1);
         CHECK(made.warnings[0].find("is trimmed to 8") != std::string::npos);
         CadOptions as_object = asked(name);
@@ -285,7 +288,7 @@ TEST_CASE("a trimmed face says so, and keeps its trims as triangles", "[cad]") {
         std::vector<CadBody> two = bodies;
         two.push_back(read_back(BRepPrimAPI_MakeBox(1, 1, 1).Solid(), "box.step")[0]);
         two[1].name = "lid";
-        CHECK(scene_of_cad(two, as_object).warnings.empty());
+        CHECK(scene_of_cad({two, {}}, as_object).warnings.empty());
     }
 }
 
@@ -334,17 +337,17 @@ TEST_CASE("a lens of a STEP file refracts as the prescription's primitive does",
 
 TEST_CASE("bodies are mirrors, glass and objects by their names", "[cad]") {
     const std::string file = written(BRepPrimAPI_MakeBox(2, 3, 4).Solid(), "box.step");
-    std::vector<CadBody> bodies = read_cad_file(file, 1e-3);
+    std::vector<CadBody> bodies = read_cad_file(file, 1e-3).bodies;
     REQUIRE(bodies.size() == 1);
     bodies[0].name = "box";
     bodies.push_back(bodies[0]);
     bodies.push_back(bodies[0]);
     bodies[2].name = "lid";
-    CHECK(scene_of_cad(bodies, asked(file)).mirrors == 3);
+    CHECK(scene_of_cad({bodies, {}}, asked(file)).mirrors == 3);
     CadOptions options = asked(file);
     options.mirrors = {"l*"};
     options.glass = {"box"};
-    const CadScene made = scene_of_cad(bodies, options);
+    const CadScene made = scene_of_cad({bodies, {}}, options);
     CHECK(made.mirrors == 1);
     CHECK(made.glass == 2);
     CHECK(made.objects == 0);
@@ -353,17 +356,78 @@ TEST_CASE("bodies are mirrors, glass and objects by their names", "[cad]") {
     REQUIRE(scene.meshes.size() == 4);
     CHECK(scene.meshes[1].name == "box (2)");
     options.glass.clear();
-    const Scene of_objects = parse_scene(scene_of_cad(bodies, options).text);
+    const Scene of_objects = parse_scene(scene_of_cad({bodies, {}}, options).text);
     CHECK(of_objects.warnings == std::vector<std::string>{});
     options.glass = {"nut"};
-    CHECK(refusal([&] { scene_of_cad(bodies, options); }) ==
-          file + ": has no body \"nut\"; it has \"box\", \"box\", \"lid\"");
+    CHECK(refusal([&] {
+              scene_of_cad({bodies, {}}, options);
+          }) == file + ": has no body \"nut\"; it has \"box\", \"box\", \"lid\"");
     options.glass = {"*"};
-    CHECK(refusal([&] { scene_of_cad(bodies, options); }) == file + ": lid: is to be a mirror and glass");
+    CHECK(refusal([&] {
+              scene_of_cad({bodies, {}}, options);
+          }) == file + ": lid: is to be a mirror and glass");
     options.mirrors.clear();
     bodies[1].is_solid = false;
-    CHECK(refusal([&] { scene_of_cad(bodies, options); }) ==
-          file + ": box: is no solid, which glass must be");
+    CHECK(refusal([&] {
+              scene_of_cad({bodies, {}}, options);
+          }) == file + ": box: is no solid, which glass must be");
+}
+
+TEST_CASE("a STEP file's names, unit and losses are told", "[cad]") {
+    BRep_Builder builder;
+    TopoDS_Compound both;
+    builder.MakeCompound(both);
+    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 2, 3, 4).Solid());
+    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 3, 4).Solid());
+    std::ifstream in(written(both, "both.step"));
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    for (const std::string name : {"left", "right"}) {
+        const std::size_t unnamed = text.find("MANIFOLD_SOLID_BREP(''");
+        REQUIRE(unnamed != std::string::npos);
+        text.insert(unnamed + 21, name);
+    }
+    const auto read = [&](const std::string& changed) {
+        std::ofstream(file_named("named.step")) << changed;
+        return read_cad_file(file_named("named.step"), 1e-3);
+    };
+    const CadModel model = read(text);
+    REQUIRE(model.bodies.size() == 2);
+    CHECK(model.bodies[0].name == "left");
+    CHECK(model.bodies[1].name == "right");
+    CHECK(model.warnings == std::vector<std::string>{});
+
+    // In metres: a thousand times as large in millimetres.
+    std::string metres = text;
+    REQUIRE(metres.find("SI_UNIT(.MILLI.,.METRE.)") != std::string::npos);
+    for (std::size_t unit; (unit = metres.find("SI_UNIT(.MILLI.,.METRE.)")) != std::string::npos;)
+        metres.replace(unit + 8, 7, "$");
+    const auto reach = [](const CadModel& of) {
+        double most = 0;
+        for (const CadBody& body : of.bodies)
+            for (const CadFace& face : body.faces)
+                for (const Vec3& point : face.points) most = std::max(most, point.x);
+        return most;
+    };
+    CHECK(std::fabs(reach(model) - 11) < 1e-9);
+    CHECK(std::fabs(reach(read(metres)) - 11000) < 1e-6);
+
+    // A plane that is nowhere: its face is lost, and said to be.
+    const std::size_t plane = text.find("PLANE('',#");
+    REQUIRE(plane != std::string::npos);
+    std::string lost = text;
+    lost.replace(plane + 9, text.find(')', plane) - plane - 9, "$");
+    const CadModel less = read(lost);
+    REQUIRE(less.warnings.size() == 1);
+    CHECK(less.warnings[0] == "1 of 12 faces are left out: OpenCASCADE makes nothing of them");
+    CHECK(scene_of_cad(less, asked("a.step")).warnings.at(0) == "a.step: " + less.warnings[0]);
+
+    const std::string point = "CARTESIAN_POINT('',(2.,0.,0.))";
+    REQUIRE(text.find(point) != std::string::npos);
+    for (const std::string number : {"1.E+31", "1.E+400"}) {
+        std::string far = text;
+        far.replace(far.find(point), point.size(), "CARTESIAN_POINT('',(" + number + ",0.,0.))");
+        CHECK(refusal([&] { read(far); }) == file_named("named.step") + ": goes beyond coordinates of 1e30");
+    }
 }
 
 TEST_CASE("files that are no CAD files are refused", "[cad][bad-input]") {

@@ -216,7 +216,7 @@ TEST_CASE("what blends in glass dims light that comes through it", "[laws][law][
         const LitWorld free(lit_world(pane_of_glass(low, 2), kLamp));
         const double exact = free.light().exact_irradiance(there).y;
         CHECK(exact > 0.05);
-        for (const double y : {1.5, 2.0, low, 2 - 1e-7, 2 + 1e-7, low + 1e-7}) {
+        for (const double y : {1.5, 2.0, low, 2.5, 2 - 1e-7, 2 + 1e-7, low + 1e-7}) {
             if (y < 0) continue;
             INFO("glass from " << low << ", smoke at " << y);
             const LitWorld dimmed(lit_world(pane_of_glass(low, 2) + smoke_at(y), kLamp));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -57,10 +58,12 @@ class Few {
         std::construct_at(data() + size_++, kept);
     }
     void resize(std::size_t count, const T& value = T()) {
+        const T kept = value;  // as well
         make_room(count);
-        if (count > size_) std::uninitialized_fill(data() + size_, data() + count, value);
+        if (count > size_) std::uninitialized_fill(data() + size_, data() + count, kept);
         size_ = count;
     }
+    /// Not of its own.
     template <typename Iterator>
     void assign(Iterator begin, Iterator end) {
         size_ = 0;

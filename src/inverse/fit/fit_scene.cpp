@@ -69,7 +69,8 @@ FitSceneMaker::FitSceneMaker(const Scene& scene) : scene_(scene) {
 
 FitScene FitSceneMaker::make(const Json& document, const std::vector<FitParameter>& parameters) {
     moves_only_.clear();
-    for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+    // Behind the document's meshes are those of area lights.
+    for (std::size_t m = 0; m < document.at("meshes").size(); ++m) {
         const Json& mesh = document.at("meshes").at(m);
         const bool moves = std::all_of(parameters.begin(), parameters.end(), [&](const FitParameter& p) {
             return p.part != ScenePart::kMesh || p.index != m || p.inside.starts_with("/transform/");

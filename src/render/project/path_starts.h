@@ -56,8 +56,8 @@ class FacetPaths {
     bool are_known() const { return path_[0].is_known(); }
     /// The path at a place: faces, sides and, linear between the corners', where it meets them.
     PerEvent<PathEvent> at(const Vec2& pixel) const;
-    /// Whether the exact ray of this place surely goes along these events, which are a path of light: the
-    /// facet holds the place, all its rays have the history, and the events lie where its paths do.
+    /// Whether the exact ray of this place goes along these events, which are a path of light: the facet holds
+    /// the place, all its rays are proven to have the history, and the events lie near where its paths do.
     bool have(const Vec2& pixel, std::span<const PathEvent> events) const;
 
   private:
