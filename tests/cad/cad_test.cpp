@@ -1,6 +1,5 @@
 // STEP and IGES files, written here by OpenCASCADE of shapes whose closed forms are known: what is read of
 // them, and the rays that the scenes made of them send.
-#include <trilens/error.h>
 #include <trilens/render.h>
 #include <trilens/scene.h>
 
@@ -13,29 +12,17 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
-#include <BRep_Builder.hxx>
 #include <GC_MakeArcOfCircle.hxx>
 #include <GeomAPI_PointsToBSplineSurface.hxx>
 #include <Geom_BSplineSurface.hxx>
-#include <IGESControl_Writer.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
-#include <Message_Printer.hxx>
-#include <STEPControl_Writer.hxx>
 #include <TColgp_Array2OfPnt.hxx>
-#include <TopoDS_Compound.hxx>
 #include <gp_Circ.hxx>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <numbers>
 #include <random>
 
-#include "cad/cad_file.h"
-#include "cad/cad_scene.h"
-#include "support/test.h"
+#include "cad_files.h"
 
 using namespace trilens;
 using namespace trilens_test;
@@ -49,33 +36,6 @@ struct Draw {
         return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);
     }
 };
-
-std::string file_named(const std::string& name) {
-    static const std::filesystem::path folder = scratch_dir("cad");
-    return (folder / name).string();
-}
-
-/// By the ending of its name.
-std::string written(const TopoDS_Shape& shape, const std::string& name) {
-    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-    const std::string file = file_named(name);
-    if (file.ends_with(".step")) {
-        STEPControl_Writer writer;
-        REQUIRE(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone);
-        REQUIRE(writer.Write(file.c_str()) == IFSelect_RetDone);
-    } else {
-        IGESControl_Writer writer;
-        REQUIRE(writer.AddShape(shape));
-        REQUIRE(writer.Write(file.c_str()));
-    }
-    return file;
-}
-
-std::vector<CadBody> read_back(const TopoDS_Shape& shape, const std::string& name) {
-    const CadModel model = read_cad_file(written(shape, name), 1e-3);
-    CHECK(model.warnings == std::vector<std::string>{});
-    return model.bodies;
-}
 
 /// By the Cox-de Boor recurrence, straight from its definition.
 double basis(const std::vector<double>& knots, std::size_t i, int degree, double t) {
@@ -147,21 +107,6 @@ double area_of_triangles(const CadFace& face) {
     double sum = 0;
     for (const std::array<int, 3>& triangle : face.triangles) sum += length(across(face, triangle));
     return sum;
-}
-
-std::string refusal(const std::function<void()>& act) {
-    try {
-        act();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
-CadOptions asked(const std::string& file) {
-    CadOptions options;
-    options.file = file;
-    return options;
 }
 
 TopoDS_Face flat_face(const std::vector<gp_Pnt>& corners) {
@@ -333,125 +278,4 @@ TEST_CASE("a lens of a STEP file refracts as the prescription's primitive does",
         CHECK(length(a.rays[i].origin - b.rays[i].origin) < 1e-5);
     }
     CHECK(through > 200);
-}
-
-TEST_CASE("bodies are mirrors, glass and objects by their names", "[cad]") {
-    const std::string file = written(BRepPrimAPI_MakeBox(2, 3, 4).Solid(), "box.step");
-    std::vector<CadBody> bodies = read_cad_file(file, 1e-3).bodies;
-    REQUIRE(bodies.size() == 1);
-    bodies[0].name = "box";
-    bodies.push_back(bodies[0]);
-    bodies.push_back(bodies[0]);
-    bodies[2].name = "lid";
-    CHECK(scene_of_cad({bodies, {}}, asked(file)).mirrors == 3);
-    CadOptions options = asked(file);
-    options.mirrors = {"l*"};
-    options.glass = {"box"};
-    const CadScene made = scene_of_cad({bodies, {}}, options);
-    CHECK(made.mirrors == 1);
-    CHECK(made.glass == 2);
-    CHECK(made.objects == 0);
-    const Scene scene = parse_scene(made.text);
-    CHECK(scene.warnings == std::vector<std::string>{});
-    REQUIRE(scene.meshes.size() == 4);
-    CHECK(scene.meshes[1].name == "box (2)");
-    options.glass.clear();
-    const Scene of_objects = parse_scene(scene_of_cad({bodies, {}}, options).text);
-    CHECK(of_objects.warnings == std::vector<std::string>{});
-    options.glass = {"nut"};
-    CHECK(refusal([&] {
-              scene_of_cad({bodies, {}}, options);
-          }) == file + ": has no body \"nut\"; it has \"box\", \"box\", \"lid\"");
-    options.glass = {"*"};
-    CHECK(refusal([&] {
-              scene_of_cad({bodies, {}}, options);
-          }) == file + ": lid: is to be a mirror and glass");
-    options.mirrors.clear();
-    bodies[1].is_solid = false;
-    CHECK(refusal([&] {
-              scene_of_cad({bodies, {}}, options);
-          }) == file + ": box: is no solid, which glass must be");
-}
-
-TEST_CASE("a STEP file's names, unit and losses are told", "[cad]") {
-    BRep_Builder builder;
-    TopoDS_Compound both;
-    builder.MakeCompound(both);
-    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 2, 3, 4).Solid());
-    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 3, 4).Solid());
-    std::ifstream in(written(both, "both.step"));
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    for (const std::string name : {"left", "right"}) {
-        const std::size_t unnamed = text.find("MANIFOLD_SOLID_BREP(''");
-        REQUIRE(unnamed != std::string::npos);
-        text.insert(unnamed + 21, name);
-    }
-    const auto read = [&](const std::string& changed) {
-        std::ofstream(file_named("named.step")) << changed;
-        return read_cad_file(file_named("named.step"), 1e-3);
-    };
-    const CadModel model = read(text);
-    REQUIRE(model.bodies.size() == 2);
-    CHECK(model.bodies[0].name == "left");
-    CHECK(model.bodies[1].name == "right");
-    CHECK(model.warnings == std::vector<std::string>{});
-
-    // In metres: a thousand times as large in millimetres.
-    std::string metres = text;
-    REQUIRE(metres.find("SI_UNIT(.MILLI.,.METRE.)") != std::string::npos);
-    for (std::size_t unit; (unit = metres.find("SI_UNIT(.MILLI.,.METRE.)")) != std::string::npos;)
-        metres.replace(unit + 8, 7, "$");
-    const auto reach = [](const CadModel& of) {
-        double most = 0;
-        for (const CadBody& body : of.bodies)
-            for (const CadFace& face : body.faces)
-                for (const Vec3& point : face.points) most = std::max(most, point.x);
-        return most;
-    };
-    CHECK(std::fabs(reach(model) - 11) < 1e-9);
-    CHECK(std::fabs(reach(read(metres)) - 11000) < 1e-6);
-
-    // A plane that is nowhere: its face is lost, and said to be.
-    const std::size_t plane = text.find("PLANE('',#");
-    REQUIRE(plane != std::string::npos);
-    std::string lost = text;
-    lost.replace(plane + 9, text.find(')', plane) - plane - 9, "$");
-    const CadModel less = read(lost);
-    REQUIRE(less.warnings.size() == 1);
-    CHECK(less.warnings[0] == "1 of 12 faces are left out: OpenCASCADE makes nothing of them");
-    CHECK(scene_of_cad(less, asked("a.step")).warnings.at(0) == "a.step: " + less.warnings[0]);
-
-    const std::string point = "CARTESIAN_POINT('',(2.,0.,0.))";
-    REQUIRE(text.find(point) != std::string::npos);
-    for (const std::string number : {"1.E+31", "1.E+400"}) {
-        std::string far = text;
-        far.replace(far.find(point), point.size(), "CARTESIAN_POINT('',(" + number + ",0.,0.))");
-        CHECK(refusal([&] { read(far); }) == file_named("named.step") + ": goes beyond coordinates of 1e30");
-    }
-}
-
-TEST_CASE("files that are no CAD files are refused", "[cad][bad-input]") {
-    const auto refused = [](const std::string& name, const std::string& text) {
-        const std::string file = file_named(name);
-        std::ofstream(file) << text;
-        return refusal([&] { read_cad_file(file, 1e-3); });
-    };
-    CHECK(refused("a.obj", "v 0 0 0") ==
-          file_named("a.obj") + ": is neither STEP (.step, .stp) nor IGES (.iges, .igs)");
-    for (const std::string name : {"a.step", "a.STP", "a.iges", "a.igs"})
-        for (const std::string text :
-             {"", "garbage", "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"}) {
-            CAPTURE(name, text);
-            CHECK(refused(name, text).starts_with(file_named(name) + ": "));
-        }
-    CHECK(refusal([] { read_cad_file(file_named("none.step"), 1e-3); }) ==
-          file_named("none.step") + ": cannot be read");
-    // Cut short at every tenth of its length.
-    const std::string file = written(BRepPrimAPI_MakeBox(2, 3, 4).Solid(), "whole.step");
-    std::ifstream in(file);
-    const std::string all{std::istreambuf_iterator<char>(in), {}};
-    for (std::size_t i = 0; i < 10; ++i) {
-        CAPTURE(i);
-        CHECK_FALSE(refused("short.step", all.substr(0, all.size() * i / 10)).empty());
-    }
 }
