@@ -12,7 +12,7 @@ TEST_CASE("the vector engine draws the plain engine's bits where rays graze tria
     Random random(29);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
-        for (int i = 0; i < 200; ++i) {
+        for (int i = 0; i < 100; ++i) {
             const SampleGrid grid{0, 0, 24, 20, 1};
             const Frame frame = random_frame(random);
             const double bow = i % 2 == 0 ? 0 : random.log_uniform(1e-9, 1e-2);
@@ -43,7 +43,7 @@ TEST_CASE("the vector engine draws the plain engine's bits where rays graze tria
                      << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
                      << tally.seen);
         CHECK(tally.different == 0);
-        CHECK(tally.seen > 2000);
+        CHECK(tally.seen > 1000);
     }
 }
 

@@ -104,7 +104,7 @@ void break_text(std::string& text, std::mt19937& random) {
 
 int rounds() {
     const char* wanted = std::getenv("TRILENS_FUZZ_ROUNDS");
-    return wanted ? std::atoi(wanted) : 3000;
+    return wanted ? std::atoi(wanted) : 1500;
 }
 unsigned seed() {
     const char* wanted = std::getenv("TRILENS_FUZZ_SEED");

@@ -104,7 +104,7 @@ TEST_CASE("law: a broken scene loads or says what is wrong in which file", "[sce
         scenes.push_back(Json::parse(example.json, nullptr, true, true));
     std::mt19937 random(20);
     int loaded = 0, refused = 0;
-    for (int i = 0; i < 6000; ++i) {
+    for (int i = 0; i < 3000; ++i) {
         Json scene = scenes[i % 2 == 0 ? 0 : random() % scenes.size()];
         for (unsigned k = 1 + random() % 2; k > 0; --k) break_something(scene, random);
         const std::string text = scene.dump();
@@ -127,8 +127,8 @@ TEST_CASE("law: a broken scene loads or says what is wrong in which file", "[sce
             REQUIRE(std::string(error.what()).find('\n') == std::string::npos);
         }
     }
-    CHECK(loaded > 300);
-    CHECK(refused > 2000);
+    CHECK(loaded > 150);
+    CHECK(refused > 1000);
 }
 
 TEST_CASE("law: broken text loads or says what is wrong in which file", "[scene][bad-input][law]") {
