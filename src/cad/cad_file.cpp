@@ -1,6 +1,7 @@
 #include "cad/cad_file.h"
 
 #include <trilens/error.h>
+#include <trilens/scene.h>
 
 #include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
@@ -77,16 +78,13 @@ ShapeNames find_names(const XSControl_Reader& reader) {
     return names;
 }
 
-/// Coordinates of scenes go no further.
-constexpr double kLargest = 1e30;
-
 /// Before anything is made of them: with an infinite one OpenCASCADE comes to no end.
 void check_points(const XSControl_Reader& reader, const std::string& file) {
     const Handle(Interface_InterfaceModel) model = reader.Model();
     for (int i = 1; i <= model->NbEntities(); ++i) {
         const auto point = Handle(StepGeom_CartesianPoint)::DownCast(model->Value(i));
         for (int k = 1; !point.IsNull() && k <= point->NbCoordinates(); ++k)
-            if (!(std::fabs(point->CoordinatesValue(k)) < kLargest))
+            if (!(std::fabs(point->CoordinatesValue(k)) < kLargestCoordinate))
                 throw InputError(file, "", "goes beyond coordinates of 1e30");
     }
 }
@@ -149,7 +147,7 @@ void mesh_finely(const TopoDS_Shape& shape, const std::string& file, double devi
     Bnd_Box box;
     BRepBndLib::Add(shape, box);
     if (box.IsVoid()) return;
-    if (!(box.SquareExtent() < kLargest * kLargest))
+    if (!(box.SquareExtent() < kLargestCoordinate * kLargestCoordinate))
         throw InputError(file, "", "goes beyond coordinates of 1e30");
     const double size = std::sqrt(box.SquareExtent());
     BRepMesh_IncrementalMesh(shape, std::max(deviation * size, 1e-12), false, kMostTurn, false);

@@ -2,6 +2,7 @@
 
 #include <fnmatch.h>
 #include <trilens/error.h>
+#include <trilens/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,6 @@
 
 namespace trilens {
 namespace {
-
-/// The highest degree of a scene's patches.
-constexpr int kHighestDegree = 9;
 
 enum class CadRole { kObject, kMirror, kGlass };
 
@@ -118,10 +116,11 @@ class SceneOfCad {
     }
 
     Json patch_of(const CadSurface& surface, const CadBody& body, std::size_t face) const {
-        if (std::max(surface.degree[0], surface.degree[1]) > kHighestDegree)
-            throw InputError(options_.file, body.name,
-                             fmt::format("face {} has degree {}: patches have {} at most", face + 1,
-                                         std::max(surface.degree[0], surface.degree[1]), kHighestDegree));
+        if (std::max(surface.degree[0], surface.degree[1]) > kHighestPatchDegree)
+            throw InputError(
+                options_.file, body.name,
+                fmt::format("face {} has degree {}: patches have {} at most", face + 1,
+                            std::max(surface.degree[0], surface.degree[1]), kHighestPatchDegree));
         return {{"type", "nurbs"},
                 {"columns", surface.columns},
                 {"degree", surface.degree},
