@@ -84,35 +84,6 @@ void find_surfaces_here(ShadeBatch& batch, double offset) {
     }
 }
 
-void find_light_here(ShadeBatch& batch, const ShadeLight& light) {
-    constexpr double kInversePi = 0.31830988618379067154;
-    batch.lit = 0;
-    for (std::size_t first = 0; first < batch.count; first += kWidth) {
-        const Vector position = load(batch.position, first), normal = load(batch.normal, first);
-        Vector toward = vector(light.toward), target = plus(position, vector(light.far));
-        Number irradiance = number(light.intensity);
-        Truth lit = hn::FirstN(kTag, kWidth);
-        if (light.is_point) {
-            target = vector(light.position);
-            const Vector step = minus(target, position);
-            const Number distance2 = dot(step, step);
-            lit = hn::Gt(distance2, number(0));
-            toward = unit_or_zero(step);
-            irradiance = hn::Div(irradiance, distance2);
-        }
-        const Number cosine = dot(normal, toward);
-        lit = hn::AndNot(hn::Le(cosine, number(0)), lit);
-        if (light.casts_shadows) {
-            // Light that arrives from behind a flat triangle is in the triangle's own shadow.
-            const Truth behind = hn::Le(dot(load(batch.geometric_normal, first), toward), number(0));
-            lit = hn::AndNot(hn::AndNot(truth_of(batch.smooth >> first), behind), lit);
-            store(minus(target, load(batch.shadow_start, first)), batch.way, first);
-        }
-        hn::Store(hn::Mul(hn::Mul(number(kInversePi), irradiance), cosine), kTag, batch.irradiance + first);
-        batch.lit |= bits_of(lit) << first;
-    }
-}
-
 void add_ambient_here(ShadeBatch& batch, const Vec3& radiance) {
     for (std::size_t first = 0; first < batch.count; first += kWidth)
         store(plus(load(batch.arriving, first), vector(radiance)), batch.arriving, first);
@@ -134,7 +105,6 @@ HWY_AFTER_NAMESPACE();
 namespace trilens {
 namespace shade_lanes {
 HWY_EXPORT(find_surfaces_here);
-HWY_EXPORT(find_light_here);
 HWY_EXPORT(add_ambient_here);
 HWY_EXPORT(add_light_here);
 }  // namespace shade_lanes
@@ -142,26 +112,6 @@ HWY_EXPORT(add_light_here);
 void find_surfaces(ShadeBatch& batch, double offset) {
     using namespace shade_lanes;
     HWY_DYNAMIC_DISPATCH(find_surfaces_here)(batch, offset);
-}
-void find_light(ShadeBatch& batch, const ShadeLight& light) {
-    using namespace shade_lanes;
-    HWY_DYNAMIC_DISPATCH(find_light_here)(batch, light);
-}
-void find_sampled_light(ShadeBatch& batch, std::span<const LightSample> samples, bool casts_shadows) {
-    constexpr double kInversePi = 0.31830988618379067154;
-    batch.lit = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const LightSample& sample = samples[i];
-        const double cosine = dot(batch.normal.get(i), sample.toward);
-        batch.irradiance[i] = kInversePi * sample.irradiance * cosine;
-        if (!(cosine > 0) || sample.irradiance == 0) continue;
-        if (casts_shadows) {
-            const bool smooth = (batch.smooth & Segments::bit(i)) != 0;
-            if (!smooth && !(dot(batch.geometric_normal.get(i), sample.toward) > 0)) continue;
-            batch.way.set(i, sample.target - batch.shadow_start.get(i));
-        }
-        batch.lit |= Segments::bit(i);
-    }
 }
 void add_ambient(ShadeBatch& batch, const Vec3& radiance) {
     using namespace shade_lanes;

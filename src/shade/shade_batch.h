@@ -1,11 +1,10 @@
 // Shading in SIMD lanes: a structure of arrays of surface points, and the steps over it.
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include <cstddef>
 
+#include "base/math/vec.h"
 #include "base/raymesh/segments.h"
-#include "shade/lights/light_sample.h"
 
 namespace trilens {
 
@@ -35,7 +34,7 @@ struct ShadeBatch {
     ShadeLanes3 position, geometric_normal, normal, shadow_start;
     Bits smooth = 0;  // lanes whose normal comes from the corners
 
-    // of one light, by find_light
+    // of one sample of a light, by find_light (shade/light_batch.h)
     ShadeLanes3 way;                             // of shadow rays, from shadow_start to the light
     alignas(64) double irradiance[kShadeLanes];  // over pi, unhindered and of a white light
     Bits lit = 0;                                // lanes that it reaches where nothing stands in the way
@@ -43,24 +42,9 @@ struct ShadeBatch {
     ShadeLanes3 arriving;  // irradiance over pi of all lights so far, and the ambient radiance
 };
 
-/// A point light, or a directional one without an angle, as all lanes see it.
-struct ShadeLight {
-    bool is_point = false;
-    Vec3 position{0};        // of a point light
-    Vec3 toward{0}, far{0};  // of a directional one: unit, and so far that it is beyond the scene
-    double intensity = 0;
-    bool casts_shadows = false;
-};
-
 /// Where the points lie and how the surface stands there. `offset`: of the start of shadow rays along the
 /// geometric normal, world units.
 void find_surfaces(ShadeBatch& batch, double offset);
-
-/// What would come of the light where nothing is in the way.
-void find_light(ShadeBatch& batch, const ShadeLight& light);
-
-/// The same, of one sample of a light per lane: `samples` has batch.count of them.
-void find_sampled_light(ShadeBatch& batch, std::span<const LightSample> samples, bool casts_shadows);
 
 /// Adds radiance that arrives from everywhere alike.
 void add_ambient(ShadeBatch& batch, const Vec3& radiance);

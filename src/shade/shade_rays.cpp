@@ -2,32 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <optional>
 
 #include "base/util/check.h"
+#include "shade/light_batch.h"
 #include "shade/shade.h"
-#include "shade/shade_batch.h"
 
 namespace trilens {
 namespace {
-
-/// A light that is the same to all lanes; none: its samples are asked for lane by lane.
-std::optional<ShadeLight> as_lanes_see_it(const ShadeScene& scene, const Light& light) {
-    ShadeLight seen;
-    const auto* directional = std::get_if<DirectionalLight>(&light.kind);
-    if (const auto* point = std::get_if<PointLight>(&light.kind)) {
-        seen.is_point = true;
-        seen.position = point->position;
-    } else if (directional && !(directional->angle > 0)) {
-        seen.toward = -directional->direction;
-        seen.far = 2 * scene.size * seen.toward;
-    } else {
-        return std::nullopt;
-    }
-    seen.intensity = light.intensity;
-    seen.casts_shadows = is_hindered(light) && scene.occluded;
-    return seen;
-}
 
 /// Those of the lanes whose shadow rays meet nothing.
 ShadeBatch::Bits unhindered(const std::function<Segments::Bits(const Segments&)>& occluded,
@@ -52,7 +33,7 @@ std::size_t lobe_count(const Light& dome) {
 /// How far shadow rays of its reflection go.
 double lobe_length(const ShadeScene& scene, const Light& dome) {
     const auto* ambient = std::get_if<AmbientLight>(&dome.kind);
-    return ambient && ambient->distance > 0 ? ambient->distance : 2 * scene.size;
+    return occlusion_distance(ambient ? *ambient : AmbientLight{}, scene.size);
 }
 
 /// The mean radiance over a square of directions, `side` radians wide.
@@ -180,15 +161,10 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
         for_each_of(viewed, [&](std::size_t i) { add_lobe(l, i); });
         return;
     }
-    const std::optional<ShadeLight> as_seen = as_lanes_see_it(scene, light);
     const std::size_t samples = sample_count(scene, l);
     ShadeBatch::Bits by_any = 0, by_all = wanted;
     for (std::size_t k = 0; k < samples; ++k) {
-        Vec3 color = light.color;
-        if (as_seen)
-            find_light(batch, *as_seen);
-        else
-            color = find_sample(l, k) * light.color;
+        const Vec3 color = find_sample(l, k) * light.color;
         ShadeBatch::Bits lit = batch.lit & wanted;
         if (shadows) lit = unhindered(light.caustics ? scene.occluded_by_all : scene.occluded, batch, lit);
         if (shadows) dim(lit);
@@ -287,12 +263,10 @@ ArrivedLight Shaded::arrived(std::size_t lane) const {
 
 /// One sample of a light as each lane sees it; gives its colour beside the light's.
 Vec3 Shaded::find_sample(std::size_t light, std::size_t sample) {
-    std::array<LightSample, kShadeLanes> at;
-    for (std::size_t i = 0; i < batch.count; ++i)
-        at[i] = light_sample(scene, light, sample, {batch.position.get(i), batch.normal.get(i), scene.size});
-    find_sampled_light(batch, std::span(at).first(batch.count),
-                       is_hindered(scene.lights[light]) && scene.occluded);
-    return at[0].color;
+    Vec3 color;
+    const LightLanes lanes = light_lanes(scene, light, sample, color);
+    find_light(batch, lanes, is_hindered(scene.lights[light]) && scene.occluded);
+    return color;
 }
 
 /// What comes over optics.

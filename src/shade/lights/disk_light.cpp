@@ -5,14 +5,17 @@
 
 namespace trilens {
 
-LightSample sample_light(const DiskLight& light, double intensity, const LitPoint& at, std::size_t sample) {
+FlatPart part_of(const DiskLight& light, double radiance, std::size_t sample) {
     const std::size_t count = static_cast<std::size_t>(light.samples);
     const Vec2 place = light.radius * disk_place(stratified_place(sample, count));
     const auto [u, v] = tangent_basis(light.direction);
     const double area = std::numbers::pi * light.radius * light.radius;
-    return from_flat_light({light.position + place.x * u + place.y * v, light.direction, intensity,
-                            area / static_cast<double>(count)},
-                           at);
+    return {light.position + place.x * u + place.y * v, light.direction, radiance,
+            area / static_cast<double>(count)};
+}
+
+LightSample sample_light(const DiskLight& light, double intensity, const LitPoint& at, std::size_t sample) {
+    return from_flat_light(part_of(light, intensity, sample), at);
 }
 
 }  // namespace trilens

@@ -87,8 +87,28 @@ struct FlatPart {
     double radiance = 0, area = 0;
 };
 
+/// One sample's part of a flat light of this radiance.
+FlatPart part_of(const RectangleLight& light, double radiance, std::size_t sample);
+FlatPart part_of(const DiskLight& light, double radiance, std::size_t sample);
+
+/// Where shadow rays to it end, in a scene of this size: before the light, which is an object, too.
+Vec3 before_flat_light(const FlatPart& part, double scene_size);
+
 /// What comes of it, taken for a point: radiance times area and cosine over the square of the distance.
 LightSample from_flat_light(const FlatPart& part, const LitPoint& at);
+
+/// A direction above the XY plane, unit, in proportion to the cosine from +Z: a disk's point under the
+/// hemisphere (Malley). Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 2023, A.5.3.
+Vec3 hemisphere_direction(std::size_t sample, std::size_t count);
+
+/// A spot light's cones: the cosine of the outer one, and what the inner one's is more than that.
+struct ConeCosines {
+    double outer = 0, fall_off = 1;
+};
+ConeCosines cone_cosines(const SpotLight& light);
+
+/// How far shadow rays to ambient light go.
+double occlusion_distance(const AmbientLight& light, double scene_size);
 
 /// A direction of the cone about `axis` (unit) whose angle from it has this cosine, solid angles in
 /// proportion to areas of the square. 1 - cosine is asked for: small cones keep their digits.
