@@ -9,7 +9,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <compare>
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
@@ -35,8 +38,8 @@ std::size_t tree_bytes(const Bfr::Surface<double>& surface) {
            static_cast<std::size_t>(surface.GetNumControlPoints()) * sizeof(double);
 }
 
-/// Faces whose neighbourhoods have the same topology share one tree. The first trees stay for good; once they
-/// fill the budget, later ones belong to the one face that they are made for.
+/// Faces whose neighbourhoods have the same topology share one tree, whatever surface they are of. The first
+/// trees stay for good; once they fill the budget, later ones belong to the one face that they are made for.
 class SharedTrees final : public Bfr::SurfaceFactoryCache {
   public:
     /// Makes the surface of a face. Returns the bytes that it alone holds in its tree; none where the face
@@ -81,6 +84,26 @@ class SharedTrees final : public Bfr::SurfaceFactoryCache {
 thread_local SharedTrees::Tree SharedTrees::tree_ = SharedTrees::Tree::kShared;
 thread_local std::optional<std::uint64_t> SharedTrees::key_;
 
+/// What trees of equal keys are equal in: how cages are refined, and how deep.
+struct TreeRules {
+    SubdivisionScheme scheme;
+    InterpolateBoundary boundary;
+    int depth;
+
+    auto operator<=>(const TreeRules&) const = default;
+};
+
+/// One for all surfaces that are there at a time: one that is made of a moved cage has its trees at once.
+std::shared_ptr<SharedTrees> trees_by(const TreeRules& rules) {
+    static std::mutex mutex;
+    static std::map<TreeRules, std::weak_ptr<SharedTrees>> by_rules;
+    const std::lock_guard lock(mutex);
+    std::weak_ptr<SharedTrees>& known = by_rules[rules];
+    std::shared_ptr<SharedTrees> trees = known.lock();
+    if (!trees) known = trees = std::make_shared<SharedTrees>();
+    return trees;
+}
+
 // --- Patches ---
 
 /// One face's limit surface with its patch points, relative to `origin` so that small faces far away stay
@@ -106,19 +129,20 @@ constexpr BoundedCache<Patch>::Budget kPatchBudget{kMostPatchBytes / 9 * 6, kMos
 
 struct LimitPatches::Impl {
     PatchMesh mesh;
-    SharedTrees trees;
+    std::shared_ptr<SharedTrees> trees;
     Bfr::RefinerSurfaceFactory<> factory;
     BoundedCache<Patch> patches;  // per face of the mesh
 
-    explicit Impl(PatchMesh made)
+    Impl(PatchMesh made, const CheckedCage& cage)
         : mesh(std::move(made)),
+          trees(trees_by({cage.scheme, cage.interpolate_boundary, depth()})),
           factory(*static_cast<const Far::TopologyRefiner*>(mesh.refiner.get()), options()),
           patches(static_cast<std::size_t>(factory.GetNumFaces()), kPatchBudget) {}
 
-    Bfr::SurfaceFactory::Options options() {
-        const int depth = kDeepest - mesh.levels();
+    int depth() const { return kDeepest - mesh.levels(); }
+    Bfr::SurfaceFactory::Options options() const {
         Bfr::SurfaceFactory::Options options;
-        options.SetApproxLevelSmooth(depth).SetApproxLevelSharp(depth).SetExternalCache(&trees);
+        options.SetApproxLevelSmooth(depth()).SetApproxLevelSharp(depth()).SetExternalCache(trees.get());
         return options;
     }
 
@@ -132,7 +156,7 @@ struct LimitPatches::Impl {
 
     Patch make_patch(int face) {
         Patch patch;
-        const std::optional<std::size_t> own_tree = trees.init(factory, face, patch.surface);
+        const std::optional<std::size_t> own_tree = trees->init(factory, face, patch.surface);
         TRILENS_CHECK(own_tree, "only faces with a limit surface are evaluated");
         patch.own_tree = *own_tree;
         if (!patch.surface.IsRegular() && !patch.surface.IsLinear()) patch.kind = SharedTrees::key();
@@ -161,7 +185,7 @@ struct LimitPatches::Impl {
 
 LimitPatches::LimitPatches(const CheckedCage& cage, const std::string& name, double memory) {
     if (cage.face_count() > 0)  // OpenSubdiv refuses cages without faces
-        impl_ = std::make_unique<Impl>(make_patch_mesh(cage, name, memory));
+        impl_ = std::make_unique<Impl>(make_patch_mesh(cage, name, memory), cage);
 }
 
 LimitPatches::~LimitPatches() = default;
@@ -171,7 +195,7 @@ bool LimitPatches::has_limit(int face) const {
 }
 
 std::size_t LimitPatches::bytes() const {
-    return impl_ ? impl_->mesh.bytes() + impl_->trees.bytes() + impl_->patches.bytes() : 0;
+    return impl_ ? impl_->mesh.bytes() + impl_->trees->bytes() + impl_->patches.bytes() : 0;
 }
 
 template <bool kSecondOrder>

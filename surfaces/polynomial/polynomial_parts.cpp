@@ -313,6 +313,7 @@ BezierNet derivative(const BezierNet& net, int axis) {
 }
 
 BezierNet restricted(const BezierNet& net, const Vec2& low, const Vec2& high) {
+    if (low == Vec2(0) && high == Vec2(1)) return net;
     return combined(net, restriction(net.nu, low.x, high.x), restriction(net.nv, low.y, high.y));
 }
 

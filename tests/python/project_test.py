@@ -163,6 +163,26 @@ def test_warm_starts_follow_the_images(change):
         np.testing.assert_allclose(same["length"][near], image["length"], rtol=1e-9)
 
 
+def test_warm_starts_go_on_over_edges_of_faces():
+    """Points move by a third of the cage's size: images leave their faces, and are those that a search finds there."""
+    scene = scene_of(cage)
+    points = around(400, 23)
+    renderer = renderer_of(scene)
+    start = renderer.project(points, path="R", visibility=False)
+    moved = points + 0.3 * around(400, 24)
+    warm = renderer.project(moved, start=start, path="R", visibility=False)
+    cold = renderer.project(moved, path="R", visibility=False)
+    crossed = 0
+    for before, image in zip(start, warm):
+        if not image["refined"] or image["steps"]["face"][0] == before["steps"]["face"][0]:
+            continue
+        same = cold[cold["point"] == image["point"]]
+        off = np.hypot(same["x"] - image["x"], same["y"] - image["y"])
+        assert off.min() < 1e-8
+        crossed += 1
+    assert crossed > 30
+
+
 def numbers_of(value):
     return [(i,) for i in range(len(value))] if isinstance(value, list) else [()]
 

@@ -271,3 +271,26 @@ TEST_CASE("a face that is said to be flat lies in a plane, and a flat box's are"
         CHECK(flat == expected);
     }
 }
+
+TEST_CASE("a surface made while another of like faces is there is the same bit for bit", "[surfaces][law]") {
+    const auto places = [](const Surface& surface) {
+        std::vector<Vec3> all;
+        for (Id face = 0; face < surface.face_count(); ++face)
+            for (const Vec2& uv : {Vec2(0.1, 0.2), Vec2(0.01, 0.003), Vec2(0.6, 0.3)}) {
+                const SurfacePoint point = surface.eval(face, uv);
+                all.insert(all.end(), {point.position, point.du, point.duv, point.normal});
+            }
+        return all;
+    };
+    Cage creased = prism(5);
+    add_crease(creased, {0, 2, 4}, 1.5);
+    for (const Cage& cage : {creased, cube()}) {
+        const std::vector<Vec3> alone = places(*quiet_cage(cage));
+        Cage moved = cage;
+        for (Vec3& point : moved.points) point = 1.3 * point + Vec3(0.2, -3, 1);
+        const auto other = quiet_cage(moved);
+        const std::vector<Vec3> of_moved = places(*other);
+        CHECK(places(*quiet_cage(cage)) == alone);
+        CHECK(of_moved != alone);
+    }
+}

@@ -159,11 +159,13 @@ std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, co
 
     PerEvent<SurfaceParameter> at;
     for (const PathEvent& event : start.events) at.push_back({event.face, event.uv});
-    const auto find = [&](std::size_t event, const Vec3& from,
-                          const Vec3& towards) -> std::optional<SurfaceParameter> {
-        const LimitTracer& tracer = limit_tracer(world, start.events[event].optic);
-        const Ray ray{from, towards - from};
-        const auto hit = tracer.first_hit(ray, event == 0 ? 0 : tracer.self_hit_t_min(ray));
+    const auto find = [&](const LeavingStep& step) -> std::optional<SurfaceParameter> {
+        const Id optic = start.events[step.event].optic;
+        if (!world.optics[optic].surface->has_closed_form())
+            return face_neighbours(world, optic).over_edge(step.border, step.towards);
+        const LimitTracer& tracer = limit_tracer(world, optic);
+        const Ray ray{step.from, step.towards - step.from};
+        const auto hit = tracer.first_hit(ray, step.event == 0 ? 0 : tracer.self_hit_t_min(ray));
         if (!hit) return std::nullopt;
         return SurfaceParameter{hit->face, hit->uv};
     };

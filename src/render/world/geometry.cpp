@@ -62,6 +62,7 @@ std::unique_ptr<LimitTracer> make_limit_tracer(const Surface& surface) {
 /// What is kept of one optic.
 struct OpticGeometry {
     Lazy<LimitTracer> limit;
+    Lazy<FaceNeighbours> neighbours;
     Lazy<PatchTree> patches;
     std::mutex mutex;  // of the two below
     int resolution = 0;
@@ -155,6 +156,11 @@ const Tracer& object_tracer(const World& world) {
 const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
     return world.geometry->optic[optic]->limit.get(
         [&] { return make_limit_tracer(*world.optics[optic].surface); });
+}
+
+const FaceNeighbours& face_neighbours(const World& world, std::size_t optic) {
+    return world.geometry->optic[optic]->neighbours.get(
+        [&] { return std::make_unique<FaceNeighbours>(*world.optics[optic].surface); });
 }
 
 const PathWorld& path_world(const World& world) {

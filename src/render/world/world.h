@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/raymesh/face_neighbours.h"
 #include "base/raymesh/surface.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
@@ -117,6 +118,9 @@ const Tracer& object_tracer(const World& world);
 
 /// The exact surface of an optic for rays.
 const LimitTracer& limit_tracer(const World& world, std::size_t optic);
+
+/// Which of its faces lie next to one another.
+const FaceNeighbours& face_neighbours(const World& world, std::size_t optic);
 
 /// All optics as paths meet them, with their exact surfaces, and how far the scene has paths followed.
 const PathWorld& path_world(const World& world);

@@ -227,7 +227,7 @@ PerEvent<SurfaceParameter> stepped(const PathChain& chain, const ChainIterate& n
         const Vec3 towards = p.position + step[i].x * p.du + step[i].y * p.dv;
         const Vec3 from = std::isinf(now.bend.length[i]) ? towards - now.bend.way[i]
                                                          : p.position - now.bend.length[i] * now.bend.way[i];
-        if (const auto found = find(i, from, towards)) at[i] = *found;
+        if (const auto found = find({i, at[i], from, towards})) at[i] = *found;
     }
     return at;
 }

@@ -117,10 +117,14 @@ class PathSensitivity {
     std::array<Vec3, 2> by_point_{};
 };
 
-/// Where a step leaves its face: the parameter of the surface near a point of space, seen from another place;
-/// none where there is none.
-using FindParameter =
-    std::function<std::optional<SurfaceParameter>(std::size_t event, const Vec3& from, const Vec3& towards)>;
+/// A step that leaves its face at `border` for a point of space; `from` sees that from where light comes.
+struct LeavingStep {
+    std::size_t event = 0;
+    SurfaceParameter border;
+    Vec3 from{0}, towards{0};
+};
+/// The parameter of the surface near a step's end; none where there is none.
+using FindParameter = std::function<std::optional<SurfaceParameter>(const LeavingStep&)>;
 
 /// The path of light near `start`, to rounding, by Newton's method whose steps are shortened until the law's
 /// residual falls. None where it finds none: no solution nearby, one beyond a face that `find` does not carry
