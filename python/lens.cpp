@@ -88,7 +88,7 @@ void bind_lens(py::module_& module) {
              py::arg("line") = "d", py::arg("rings") = SpotRequest().rings, py::arg("shift") = 0.0,
              "Where exact rays of a beam from infinity, `field` degrees from the axis in imaging_section,\n"
              "meet the plane `shift` behind the paraxial focus of that section: points, asked (rays sent),\n"
-             "centroid, rms_radius, radius. pupil_radius 0: the stop's.")
+             "centroid, rms_radius, radius (nan where no ray comes through). pupil_radius 0: the stop's.")
         .def("trace", traced, py::arg("origin"), py::arg("direction"), py::kw_only(), py::arg("line") = "d",
              "An exact ray through all surfaces, z along the axis from the first vertex: (origin on the last "
              "surface, unit\n"

@@ -114,7 +114,15 @@ void add_seidel(const LensPrescription& section, const LensOptions& options, dou
 }
 
 /// `height`: of its centroid, in the section.
-void add_spot(const Spot& spot, double height, Answer& answer) {
+void add_spot(const Spot& spot, double height, Answer& answer, Console& console) {
+    if (spot.points.empty()) {
+        answer.fields["spot"] = {{"rays", 0}, {"asked", spot.asked}};
+        for (const char* number : {"centroid", "rms_radius", "radius"})
+            answer.fields["spot"][number] = Json();
+        console.warn(
+            "no ray of the spot's beam comes through the lens: its rims, or total reflection, stop all");
+        return;
+    }
     answer.fields["spot"] = {{"rays", spot.points.size()},
                              {"asked", spot.asked},
                              {"centroid", {spot.centroid.x, spot.centroid.y}},
@@ -155,7 +163,7 @@ Answer run(const LensOptions& options, Console& console) {
     }
     add_seidel(cut, options, pupil, answer);
     const Spot spot = spot_of(lens, {pupil, options.field, line, options.rings, options.shift});
-    add_spot(spot, section == LensSection::kX ? spot.centroid.x : spot.centroid.y, answer);
+    add_spot(spot, section == LensSection::kX ? spot.centroid.x : spot.centroid.y, answer, console);
     if (options.output.empty()) return answer;
     std::string table = "x,y\n";
     for (const Vec2& p : spot.points) table += fmt::format("{},{}\n", p.x, p.y);
@@ -188,7 +196,7 @@ Command lens_command() {
                         .range = {-89, 89}},
                        {.names = "--pupil",
                         .target = &options->pupil,
-                        .help = "radius of the beam in the entrance pupil; without it, the stop's",
+                        .help = "radius of the beam in the entrance pupil; 0: the stop's",
                         .range = {0, 1e9}},
                        {.names = "--line",
                         .target = &options->line,

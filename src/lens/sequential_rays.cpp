@@ -139,7 +139,11 @@ Spot spot_of(const LensPrescription& lens, const SpotRequest& request) {
             if (place) spot.points.push_back(*place);
         }
     }
-    if (spot.points.empty()) return spot;
+    if (spot.points.empty()) {
+        spot.rms_radius = spot.radius = std::numeric_limits<double>::quiet_NaN();
+        spot.centroid = Vec2(spot.radius);
+        return spot;
+    }
     const auto count = static_cast<double>(spot.points.size());
     for (const Vec2& p : spot.points) spot.centroid += p / count;
     double sum = 0;

@@ -33,6 +33,7 @@ struct SpotRequest {
 struct Spot {
     std::vector<Vec2> points;  // x and y in the plane, of rays that come through
     std::size_t asked = 0;     // rays that were sent
+    // Not numbers where no ray comes through.
     Vec2 centroid{0};
     double rms_radius = 0;  // about the centroid
     double radius = 0;      // of the farthest ray from it

@@ -46,6 +46,14 @@ def test_the_command_tells_what_python_tells(command, tmp_path):
     assert answer["seidel"]["sum"] == pytest.approx(sums, rel=1e-12)
 
 
+def test_a_spot_without_rays_has_no_radius(command):
+    code, answer = command("lens", TRIPLET, "--field", "60")
+    assert code == 0 and any("no ray" in warning for warning in answer["warnings"])
+    assert answer["spot"] == {"rays": 0, "asked": 217, "centroid": None, "rms_radius": None, "radius": None}
+    found = trilens.load_lens(TRIPLET).spot(field=60)
+    assert not found["points"] and math.isnan(found["rms_radius"]) and math.isnan(found["centroid"][0])
+
+
 def test_a_lens_primitive_has_its_sides():
     lens = trilens.primitive_surface("lens", axis=(0, 0, 1), thickness=0.5, front=(4, 1), back=(-4, 0.9, -1, 0, 0.001))
     assert lens.face_count == 14
