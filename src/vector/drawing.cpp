@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <set>
 
 #include "base/math/box.h"
 #include "base/raymesh/rasterize.h"
@@ -11,6 +12,7 @@
 #include "base/util/format.h"
 #include "projector/projector.h"
 #include "render/engines/engine.h"
+#include "render/world/blended_surfaces.h"
 #include "render/world/world.h"
 
 namespace trilens {
@@ -126,6 +128,19 @@ std::vector<Id> nodes_seen(const SampleIds& ids, Id optic, std::size_t path) {
     return nodes;
 }
 
+/// Lines are of the triangles that end rays.
+void warn_of_what_has_no_lines(const World& world, const Warn& warn) {
+    std::string names;
+    const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+    if (world.blended) {
+        const std::vector<Id>& objects = world.blended->triangles().object;
+        for (const Id object : std::set<Id>(objects.begin(), objects.end()))
+            add(world.scene.meshes[object].name);
+    }
+    for (const Volume& volume : world.scene.volumes) add(volume.name);
+    if (!names.empty()) warn("surfaces that blend and volumes have no lines: " + names);
+}
+
 }  // namespace
 
 std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& params, const LineChoice& lines,
@@ -159,6 +174,7 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     if (ids.traced > 0 && warn)
         warn(fmt::format("no lines where paths are traced, not projected: {:.2f} % of the film",
                          100.0 * static_cast<double>(ids.traced) / static_cast<double>(grid.size())));
+    if (warn && !lines.caustics) warn_of_what_has_no_lines(world, warn);
     ids.camera_facet = camera_facets(frame.camera.mesh, grid);
 
     const double size = lines.caustics ? scene_size(drawing->visible) : 0;

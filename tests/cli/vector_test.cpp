@@ -237,6 +237,29 @@ TEST_CASE("a drawing's names are escaped, and options that make no sense are ref
     CHECK(run_trilens("render " + scene + " --crop 0,0,9,9 -o " + folder + "/out.svg").exit_code == 2);
 }
 
+TEST_CASE("surfaces that blend and volumes are named where lines leave them out", "[cli][vector]") {
+    const std::string folder = scratch_dir("vector_veils");
+    const std::string veiled =
+        replaced(flat_mirror_scene(), R"("meshes": [)",
+                 R"("volumes": [ { "name": "smoke", "grid": { "size": [2,2,2], "scalars": [0,1,0,1,0,1,0,1] },
+            "transferFunction": { "map": "grey", "extinction": 1 } } ],
+  "meshes": [ { "name": "veil", "role": "object", "material": "pale", "points": [[0,0,1],[1,0,1],[0,1,1]],
+                "faceVertexCounts": [3], "faceVertexIndices": [0,1,2] },)");
+    const std::string materials = R"("materials": [)";
+    const auto draws = [&](const std::string& mode) {
+        const std::string scene = write_file(
+            folder, "scene.json",
+            replaced(veiled, materials,
+                     materials + R"( { "name": "pale", "unlit": true, "alphaFactor": 0.5, "alphaMode": ")" +
+                         mode + R"(" },)"));
+        const CommandRun run = run_trilens("render " + scene + " -o " + folder + "/lines.svg");
+        CHECK(run.exit_code == 0);
+        return run.err;
+    };
+    CHECK(draws("blend").find("have no lines: veil, smoke") != std::string::npos);
+    CHECK(draws("opaque").find("have no lines: smoke") != std::string::npos);
+}
+
 TEST_CASE("edges that stand a hair inside a floor are no dashed lines", "[cli][vector]") {
     // The pyramid of the example stands on the floor, two thousandths below the tiles on it.
     const std::string folder = scratch_dir("vector_base");
