@@ -13,6 +13,7 @@
 #include "scene/animation/animation_keys.h"
 #include "scene/data/light_objects.h"
 #include "scene/formats/lens_file.h"
+#include "scene/formats/line_scanner.h"
 #include "scene/imports/expand_imports.h"
 #include "scene/imports/expand_lenses.h"
 #include "scene/imports/housing.h"
@@ -101,6 +102,19 @@ void warn_of_appearance(Reading& reading) {
         reading.warn("/lights", "there is no light: every object whose material is not unlit is black");
 }
 
+/// What a file is instead of a scene, by its name; empty where that does not say.
+std::string other_kind(const std::string& file) {
+    const std::string ending = in_capitals(std::filesystem::path(file).extension().string());
+    const auto is_one_of = [&](std::initializer_list<const char*> endings) {
+        return std::find(endings.begin(), endings.end(), ending) != endings.end();
+    };
+    if (is_one_of({".OBJ"})) return "is a mesh: a scene names it as the 'file' of one of its meshes";
+    if (is_one_of({".ZMX", ".SEQ"})) return "is a lens: a scene names it as the 'file' of one of its lenses";
+    if (is_one_of({".STEP", ".STP", ".IGES", ".IGS"}))
+        return "is a CAD file: 'trilens cad' makes a scene of its bodies";
+    return "";
+}
+
 }  // namespace
 
 SceneSource::SceneSource(std::string named)
@@ -157,6 +171,7 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
                                overrides, textures, import);
     }
     const std::string text = read_required_file(file);
+    if (const std::string kind = other_kind(file); !kind.empty()) throw InputError(file, "", kind);
     Scene scene = load_scene_text(
         is_housing_name(file)
             ? scene_of_housing(text, file).dump(-1, ' ', false, Json::error_handler_t::replace)

@@ -107,6 +107,19 @@ TEST_CASE("a scene that cannot be used: exit 3, the file and the place", "[cli][
     }
 }
 
+TEST_CASE("a mesh, a lens or a CAD file in a scene's place is told what to do with", "[cli][bad-input]") {
+    const std::string folder = scratch_dir("bad_kinds");
+    const auto render = [&](const std::string& name) {
+        return run_trilens("render " + write_file(folder, name, "# no scene\n") + " -o " + folder +
+                           "/out.exr");
+    };
+    check_one_message(render("pot.obj"), 3, {"pot.obj", "is a mesh", "'file'"});
+    check_one_message(render("triplet.ZMX"), 3, {"triplet.ZMX", "is a lens"});
+    check_one_message(render("mount.stp"), 3, {"mount.stp", "trilens cad"});
+    const std::string scene = write_file(folder, "scene.json", small_scene());
+    check_one_message(run_trilens("lens " + scene), 3, {"scene.json", "/version", "is a scene", "lenses"});
+}
+
 TEST_CASE("files that cannot be read: exit 3", "[cli][bad-input]") {
     const std::string folder = scratch_dir("bad_files");
     const std::string scene = write_file(folder, "scene.json", small_scene());

@@ -306,6 +306,11 @@ Json parse_defined(const std::string& bytes, const std::string& file, const char
 
 LensPrescription parse_lens_json(const std::string& bytes, const std::string& file,
                                  std::span<const Glass> glasses) {
+    if (const Json json = parse_json(bytes, file); json.is_object() && json.contains("version"))
+        fail_at(
+            file, "/version",
+            "this is a scene: what is asked for is a prescription, as the 'file' or the 'surfaces' of one of "
+            "its lenses");
     const Json json = parse_defined(bytes, file, "lens");
     const Node root{json, "", file};
     if (!root.has("surfaces")) root["file"].fail("a lens file has its own 'surfaces'");
