@@ -195,6 +195,7 @@ RunKeys keys_of(SweepJob& job, const Coordinates& point) {
     const SubjectFacts& facts = sweepable_facts(*job.subjects, request);
     const std::string seen = code_digest() + "\n" + facts.camera + "\n" + facts.digest;
     const PictureRequest& picture = request.picture;
+    check_engine(picture);
     const std::string of_truth =
         job.truth == Engine::kFacetsTruth ? picture_key(picture) : window_key(picture.layers);
     return {seen + "\n" + picture_key(picture), seen + "\n" + engine_name(job.truth) + "\n" + of_truth,

@@ -92,6 +92,8 @@ TEST_CASE("options that would do nothing are refused, each with its reason", "[c
     const std::string scene = write_file(scratch_dir("cli_usage_idle"), "room.json", small_scene());
     check_usage("trace " + scene + " -o out.exr --grid screen", {"--grid", "--surface facets"});
     check_usage("render " + scene + " -o out.exr --engine envmap --max-error 1", {"--max-error", "envmap"});
+    check_usage("sweep run " + scene + " -o out --over engine=exact,planar --over max-error=0.5",
+                {"max-error", "planar"});
     for (const char* ending : {"png", "svg", "obj"})
         check_usage("render " + scene + " -o out." + ending + " --aov all", {"--aov", ".exr", ending});
     check_usage("project " + scene + " --point 0,0,3 --search complete --refine none",
