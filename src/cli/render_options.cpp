@@ -193,7 +193,7 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (!options.display_server.empty() && (is_vector(format) || format.empty()))
         throw UsageError("--display-server shows pictures of pixels: it needs -o OUT.exr or OUT.png");
     if (!options.scene.aov.empty() && !format.empty() && format != "exr")
-        throw UsageError("--aov is for .exr outputs: an ." + format + " has no layers");
+        throw UsageError("--aov is for .exr outputs: ." + format + " has no layers");
     if (options.frames.asks() && (is_vector(format) || !options.pixel.empty()))
         throw UsageError("--frames and --turntable are for .exr, .png and .apng outputs");
     if (options.maps_tones() && format != "png" && format != "apng")

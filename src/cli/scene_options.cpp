@@ -198,7 +198,7 @@ std::vector<Option> window_options(SceneOptions& options) {
          .target = &options.aov,
          .help =
              "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat,magnification,"
-             "position,ray,bound; without it, all but the last six",
+             "position,ray,bound,coverage; without it, all but the last seven",
          .value = "LIST"}};
 }
 

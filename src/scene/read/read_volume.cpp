@@ -21,8 +21,8 @@ const std::vector<Field<Volume>>& volume_entry_fields() {
         setting("name", &Volume::name, ref("name")).without_default(),
         part<Volume>(
             "file", some_text(),
-            "Legacy VTK in ASCII (.vtk), NRRD (.nrrd, .nhdr), or, with 'grid', samples as they lie in "
-            "memory."),
+            "Legacy VTK (.vtk), VTK's XML (.vtu), NRRD (.nrrd, .nhdr), or, with 'grid', samples as they "
+            "lie in memory."),
         part<Volume>("field", some_text(),
                      "Of a VTK file: the scalar at its points of that name; without it, the first one."),
         part<Volume>("points", list_of(ref("vec3"), 4)),
