@@ -32,6 +32,7 @@ def small_scene():
     text = trilens("scene", "example", "mirror-sphere").stdout
     scene = json.loads(re.sub(r"^\s*//.*$", "", text, flags=re.M))
     scene["film"] = {"width": 64, "height": 48}
+    scene["lights"] = [{"type": "point", "position": [1, 3, 3], "intensity": 20}]  # soft ones take time
     return json.dumps(scene)
 
 
