@@ -1,8 +1,9 @@
-// Builds the tree level by level, all faces at once.
+// Groups are made at once, halves of cells when a search first comes to them.
 #include "specular/cell_bvh.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "base/util/parallel.h"
@@ -10,10 +11,8 @@
 namespace trilens {
 namespace {
 
-/// Cells whose normals turn less than this are halved no further in advance.
-constexpr double kFlatEnough = 0.05;
-/// Nor any once there are this many for each face, and this many in all (some 300 bytes each).
-constexpr std::size_t kCellsPerFace = 256, kMostCells = 1u << 17;
+/// So many cells are halved at most (their halves take some 600 bytes).
+constexpr std::size_t kMostHalved = 1u << 16;
 
 PlaceBounds joined(const PlaceBounds& a, const PlaceBounds& b) {
     PlaceBounds both;
@@ -54,45 +53,37 @@ std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& mi
     return halves;
 }
 
-CellBvh::CellBvh(const Surface& surface) : surface_(surface), bounder_(surface.make_bounder()) {
-    if (!bounder_ || surface.face_count() == 0) return;
-    const std::size_t faces = surface.face_count();
-    cells_.resize(faces);
-    parallel_for(faces, 16, [&](std::size_t first, std::size_t last) {
+SurfaceCell::~SurfaceCell() {
+    delete halves_.load();
+}
+
+CellBvh::CellBvh(const Surface& surface)
+    : surface_(surface), bounder_(surface.make_bounder()), faces_(bounder_ ? surface.face_count() : 0) {
+    if (faces_.empty()) return;
+    parallel_for(faces_.size(), 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t f = first; f < last; ++f) {
-            cells_[f].box.face = static_cast<Id>(f);
-            cells_[f].bounds = bounder_->bounds(static_cast<Id>(f), Vec2(0), Vec2(1));
+            faces_[f].box.face = static_cast<Id>(f);
+            faces_[f].bounds = bounder_->bounds(static_cast<Id>(f), Vec2(0), Vec2(1));
         }
     });
-    const std::size_t most = std::min(kCellsPerFace * faces, kMostCells);
-    for (std::size_t from = 0; from < cells_.size() && cells_.size() < most;) {
-        const std::size_t to = cells_.size();
-        add_halves(from, to);
-        from = to;
-    }
-    std::vector<std::size_t> order(faces);
-    for (std::size_t f = 0; f < faces; ++f) order[f] = f;
+    std::vector<std::size_t> order(faces_.size());
+    for (std::size_t f = 0; f < order.size(); ++f) order[f] = f;
     add_groups(order);
 }
 
-void CellBvh::add_halves(std::size_t from, std::size_t to) {
-    for (std::size_t c = from; c < to; ++c) {
-        const SurfaceBounds& bounds = cells_[c].bounds;
-        const FaceDomain domain = surface_.domain(cells_[c].box.face);
-        const bool is_flat = bounds.normal_radius < kFlatEnough && std::isfinite(bounds.duu_radius);
-        if (bounds.is_finest || is_flat || is_outside(domain, cells_[c].box)) continue;
-        const auto halves = halves_of(cells_[c].box, bounds.middle);
-        cells_[c].halves = cells_.size();
-        cells_.push_back({halves.first, {}, 0});
-        cells_.push_back({halves.second, {}, 0});
-    }
-    parallel_for(cells_.size() - to, 16, [&](std::size_t first, std::size_t last) {
-        for (std::size_t c = to + first; c < to + last; ++c) {
-            SurfaceCell& cell = cells_[c];
-            if (is_outside(surface_.domain(cell.box.face), cell.box)) continue;
-            cell.bounds = bounder_->bounds(cell.box.face, cell.box.low, cell.box.high);
-        }
-    });
+const CellHalves* CellBvh::halves(const SurfaceCell& cell) const {
+    if (const CellHalves* known = cell.halves_.load(std::memory_order_acquire)) return known;
+    if (halved_.load(std::memory_order_relaxed) >= kMostHalved) return nullptr;
+    auto made = std::make_unique<CellHalves>();
+    std::tie((*made)[0].box, (*made)[1].box) = halves_of(cell.box, cell.bounds.middle);
+    for (SurfaceCell& half : *made)
+        if (!is_outside(surface_.domain(half.box.face), half.box))
+            half.bounds = bounder_->bounds(half.box.face, half.box.low, half.box.high);
+    // Of threads that come at once the first one's stay.
+    const CellHalves* known = nullptr;
+    if (!cell.halves_.compare_exchange_strong(known, made.get(), std::memory_order_acq_rel)) return known;
+    halved_.fetch_add(1, std::memory_order_relaxed);
+    return made.release();
 }
 
 std::size_t CellBvh::add_groups(std::span<std::size_t> faces) {
@@ -100,21 +91,21 @@ std::size_t CellBvh::add_groups(std::span<std::size_t> faces) {
     if (faces.size() == 1) {
         group.leaf = true;
         group.first = faces.front();
-        group.place = place_of(cells_[group.first].bounds);
+        group.place = place_of(faces_[group.first].bounds);
         groups_.push_back(group);
         return groups_.size() - 1;
     }
     // In two at the median, along the axis in which the faces' middles spread the most.
-    Vec3 low(cells_[faces.front()].bounds.middle.position), high = low;
+    Vec3 low(faces_[faces.front()].bounds.middle.position), high = low;
     for (const std::size_t f : faces) {
-        low = glm::min(low, cells_[f].bounds.middle.position);
-        high = glm::max(high, cells_[f].bounds.middle.position);
+        low = glm::min(low, faces_[f].bounds.middle.position);
+        high = glm::max(high, faces_[f].bounds.middle.position);
     }
     const Vec3 size = high - low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::size_t half = faces.size() / 2;
     std::sort(faces.begin(), faces.end(), [&](std::size_t a, std::size_t b) {
-        const double p = cells_[a].bounds.middle.position[axis], q = cells_[b].bounds.middle.position[axis];
+        const double p = faces_[a].bounds.middle.position[axis], q = faces_[b].bounds.middle.position[axis];
         return p != q ? p < q : a < b;
     });
     group.first = add_groups(faces.first(half));

@@ -1,6 +1,8 @@
 // Bounding volume hierarchy over a surface's cells: groups of faces, faces, halved cells.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -21,12 +23,22 @@ struct CellBox {
     Vec2 half() const { return 0.5 * (high - low); }
 };
 
-/// A cell with its bounds; its two halves stand next to each other.
-struct SurfaceCell {
+/// A cell with its bounds; and its two halves, once somebody has asked for them.
+class SurfaceCell {
+  public:
+    SurfaceCell() = default;
+    ~SurfaceCell();
+    SurfaceCell(const SurfaceCell&) = delete;
+    SurfaceCell& operator=(const SurfaceCell&) = delete;
+
     CellBox box;
     SurfaceBounds bounds;
-    std::size_t halves = 0;  // index of the first; 0: none are stored
+
+  private:
+    friend class CellBvh;
+    mutable std::atomic<const std::array<SurfaceCell, 2>*> halves_ = nullptr;
 };
+using CellHalves = std::array<SurfaceCell, 2>;
 
 /// Several cells or groups within one bound.
 struct CellGroup {
@@ -47,8 +59,8 @@ bool is_outside(FaceDomain domain, const CellBox& box);
 /// The halves of a cell, across its side that is longer in the world.
 std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& middle);
 
-/// The tree: groups over the faces, the faces' cells halved down to where their normals hardly turn.
-/// Deterministic; thread-safe to read. The surface must live longer.
+/// The tree: groups over the faces, and the faces' cells, halved as far as any search went. What is asked for
+/// has the same bits whoever asked before. Thread-safe to read. The surface must live longer.
 class CellBvh {
   public:
     explicit CellBvh(const Surface& surface);
@@ -56,16 +68,19 @@ class CellBvh {
     /// Null where the surface has no bounds: then there are no cells.
     const SurfaceBounder* bounder() const { return bounder_.get(); }
     std::span<const CellGroup> groups() const { return groups_; }  // the last is the whole surface
-    std::span<const SurfaceCell> cells() const { return cells_; }
+    std::span<const SurfaceCell> faces() const { return faces_; }  // whole
+    /// The halves of one of the tree's cells, of which one may have nothing of the face (is_outside); null
+    /// where there are so many already that no more are kept.
+    const CellHalves* halves(const SurfaceCell& cell) const;
 
   private:
-    void add_halves(std::size_t from, std::size_t to);
     std::size_t add_groups(std::span<std::size_t> faces);
 
     const Surface& surface_;
     std::unique_ptr<const SurfaceBounder> bounder_;
-    std::vector<SurfaceCell> cells_;
+    std::vector<SurfaceCell> faces_;
     std::vector<CellGroup> groups_;
+    mutable std::atomic<std::size_t> halved_ = 0;
 };
 
 }  // namespace trilens

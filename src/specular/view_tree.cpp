@@ -24,31 +24,30 @@ TreeNode* ViewTree::add(const PlaceBounds& place) {
 
 TreeNode* ViewTree::add_group(std::size_t index) {
     TreeNode* node = add(cells_.groups()[index].place);
-    node->stored = index;
+    node->group = index;
     return node;
 }
 
-TreeNode* ViewTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, std::size_t halves) {
+TreeNode* ViewTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored) {
     TreeNode* node = add(place_of(bounds));
     node->box = box;
     node->bounds = &bounds;
-    node->stored = halves;
+    node->stored = stored;
     return node;
 }
 
-TreeNode* ViewTree::add_stored(std::size_t index) {
-    const SurfaceCell& cell = cells_.cells()[index];
+TreeNode* ViewTree::add_stored(const SurfaceCell& cell) {
     if (is_outside(surface_.domain(cell.box.face), cell.box)) return nullptr;
-    return add_cell(cell.box, cell.bounds, cell.halves);
+    return add_cell(cell.box, cell.bounds, &cell);
 }
 
 TreeNode* ViewTree::add_fresh(const CellBox& box) {
     if (is_outside(surface_.domain(box.face), box)) return nullptr;
-    return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), 0);
+    return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), nullptr);
 }
 
 TreeNode& ViewTree::face(Id face) {
-    if (!faces_[face]) faces_[face] = add_stored(face);
+    if (!faces_[face]) faces_[face] = add_stored(cells_.faces()[face]);
     return *faces_[face];
 }
 
@@ -61,11 +60,11 @@ void ViewTree::halve(TreeNode& node) {
     if (node.is_halved) return;
     node.is_halved = true;
     if (!node.bounds) {
-        const CellGroup& group = cells_.groups()[node.stored];
+        const CellGroup& group = cells_.groups()[node.group];
         node.halves[0] = group.leaf ? &face(static_cast<Id>(group.first)) : add_group(group.first);
         node.halves[1] = group.leaf ? nullptr : add_group(group.second);
-    } else if (node.stored > 0) {
-        for (std::size_t half = 0; half < 2; ++half) node.halves[half] = add_stored(node.stored + half);
+    } else if (const CellHalves* halves = node.stored ? cells_.halves(*node.stored) : nullptr) {
+        for (std::size_t half = 0; half < 2; ++half) node.halves[half] = add_stored((*halves)[half]);
     } else {
         const auto [first, second] = halves_of(node.box, node.bounds->middle);
         node.halves[0] = add_fresh(first);

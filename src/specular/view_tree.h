@@ -38,11 +38,12 @@ class NodePool {
 struct TreeNode {
     PlaceBounds place;
     EyeView view;
-    CellBox box;                            // of a cell
-    const SurfaceBounds* bounds = nullptr;  // of a cell; null for a group
-    std::size_t stored = 0;            // of a group: its index; of a cell: that of its stored halves, or 0
-    const CellTerms* terms = nullptr;  // of a cell, where terms_of was asked
-    std::uint32_t asked_by = 0;        // of a cell: which group of points asked the Newton operator,
+    CellBox box;                               // of a cell
+    const SurfaceBounds* bounds = nullptr;     // of a cell; null for a group
+    std::size_t group = 0;                     // of a group: its index
+    const SurfaceCell* stored = nullptr;       // of a cell that others may come to as well
+    const CellTerms* terms = nullptr;          // of a cell, where terms_of was asked
+    std::uint32_t asked_by = 0;                // of a cell: which group of points asked the Newton operator,
     LaneBits asked = 0, open = 0, narrow = 0;  // for which of them, and what it said
     bool is_halved = false;                    // whether `halves` is known
     TreeNode* halves[2] = {nullptr,
@@ -70,8 +71,8 @@ class ViewTree {
   private:
     TreeNode* add(const PlaceBounds& place);
     TreeNode* add_group(std::size_t index);
-    TreeNode* add_cell(const CellBox& box, const SurfaceBounds& bounds, std::size_t halves);
-    TreeNode* add_stored(std::size_t index);
+    TreeNode* add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored);
+    TreeNode* add_stored(const SurfaceCell& cell);
     TreeNode* add_fresh(const CellBox& box);
 
     const Surface& surface_;
