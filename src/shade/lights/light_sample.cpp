@@ -39,25 +39,6 @@ Vec2 disk_place(const Vec2& square) {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-Vec3 before_flat_light(const FlatPart& part, double scene_size) {
-    // A share of the scene's size: the light would hide itself wherever rounding puts the rays' ends behind it.
-    constexpr double kBeforeLight = 1e-5;
-    return part.position + kBeforeLight * scene_size * part.normal;
-}
-
-LightSample from_flat_light(const FlatPart& part, const LitPoint& at) {
-    const Vec3 way = part.position - at.position;
-    const double distance2 = dot(way, way);
-    if (!(distance2 > 0)) return {};
-    const Vec3 toward = normalize_or_zero(way);
-    const double cosine = -dot(toward, part.normal);
-    if (!(cosine > 0)) return {};
-    return {.toward = toward,
-            .target = before_flat_light(part, at.scene_size),
-            .irradiance = cosine / distance2 * (part.area * part.radiance),
-            .spread = std::sqrt(cosine * part.area / (std::numbers::pi * distance2))};
-}
-
 Vec3 hemisphere_direction(std::size_t sample, std::size_t count) {
     const Vec2 disk = disk_place(stratified_place(sample, count));
     return {disk.x, disk.y, std::sqrt(std::max(1 - dot(disk, disk), 0.0))};
