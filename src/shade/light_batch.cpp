@@ -50,12 +50,12 @@ struct Seen {
     Truth lit;
 };
 
-HWY_INLINE Seen see(const FarLanes& light, const Vector& position, const Vector&) {
+HWY_INLINE Seen see(const FarLightLanes& light, const Vector& position, const Vector&) {
     return {vector(light.toward), plus(position, vector(light.far)), number(light.irradiance),
             hn::FirstN(kTag, kWidth)};
 }
 
-HWY_INLINE Seen see(const PointLanes& light, const Vector& position, const Vector&) {
+HWY_INLINE Seen see(const PointLightLanes& light, const Vector& position, const Vector&) {
     const Vector target = vector(light.position), way = minus(target, position);
     const Number distance2 = dot(way, way);
     const Vector toward = unit_or_zero(way);
@@ -70,7 +70,7 @@ HWY_INLINE Seen see(const PointLanes& light, const Vector& position, const Vecto
     return {toward, target, irradiance, is_positive(distance2)};
 }
 
-HWY_INLINE Seen see(const FlatLanes& light, const Vector& position, const Vector&) {
+HWY_INLINE Seen see(const FlatLightLanes& light, const Vector& position, const Vector&) {
     const FlatPart& part = light.part;
     const Vector way = minus(vector(part.position), position);
     const Number distance2 = dot(way, way);
@@ -81,7 +81,7 @@ HWY_INLINE Seen see(const FlatLanes& light, const Vector& position, const Vector
             hn::And(is_positive(distance2), is_positive(cosine))};
 }
 
-HWY_INLINE Seen see(const SphereLanes& light, const Vector& position, const Vector&) {
+HWY_INLINE Seen see(const SphereLightLanes& light, const Vector& position, const Vector&) {
     // The direction, as cone_direction has it.
     const double radius2 = light.light.radius * light.light.radius;
     const Vector way = minus(vector(light.light.position), position);
@@ -107,7 +107,7 @@ HWY_INLINE Seen see(const SphereLanes& light, const Vector& position, const Vect
             hn::Gt(distance2, number(radius2))};
 }
 
-HWY_INLINE Seen see(const HemisphereLanes& light, const Vector& position, const Vector& normal) {
+HWY_INLINE Seen see(const HemisphereLightLanes& light, const Vector& position, const Vector& normal) {
     const Vector toward = unit_or_zero(
         plus(across(basis_of(normal), light.above.x, light.above.y), times(number(light.above.z), normal)));
     const Number facing = dot(toward, normal);
@@ -163,15 +163,15 @@ void find_light(ShadeBatch& batch, const LightLanes& light, bool casts_shadows) 
 
 namespace {
 
-PointLanes lanes_of(const PointLight& light, double intensity) {
-    PointLanes lanes;
+PointLightLanes lanes_of(const PointLight& light, double intensity) {
+    PointLightLanes lanes;
     lanes.position = light.position;
     lanes.intensity = intensity;
     return lanes;
 }
 
-PointLanes lanes_of(const SpotLight& light, double intensity) {
-    PointLanes lanes = lanes_of(PointLight{light.position}, intensity);
+PointLightLanes lanes_of(const SpotLight& light, double intensity) {
+    PointLightLanes lanes = lanes_of(PointLight{light.position}, intensity);
     const ConeCosines cone = cone_cosines(light);
     lanes.is_spot = true;
     lanes.direction = light.direction;
@@ -190,20 +190,20 @@ LightLanes light_lanes(const ShadeScene& scene, std::size_t light, std::size_t s
             using Kind = std::decay_t<decltype(kind)>;
             if constexpr (requires { part_of(kind, intensity, sample); }) {
                 const FlatPart part = part_of(kind, intensity, sample);
-                return FlatLanes{part, before_flat_light(part, scene.size)};
+                return FlatLightLanes{part, before_flat_light(part, scene.size)};
             } else if constexpr (requires { lanes_of(kind, intensity); }) {
                 return lanes_of(kind, intensity);
             } else if constexpr (std::is_same_v<Kind, SphereLight>) {
                 const auto count = static_cast<std::size_t>(kind.samples);
-                return SphereLanes{kind, intensity, disk_place(stratified_place(sample, count))};
+                return SphereLightLanes{kind, intensity, disk_place(stratified_place(sample, count))};
             } else if constexpr (std::is_same_v<Kind, AmbientLight>) {
                 const auto count = static_cast<std::size_t>(kind.samples);
-                return HemisphereLanes{hemisphere_direction(sample, count), intensity,
-                                       static_cast<double>(count), occlusion_distance(kind, scene.size)};
+                return HemisphereLightLanes{hemisphere_direction(sample, count), intensity,
+                                            static_cast<double>(count), occlusion_distance(kind, scene.size)};
             } else {  // the same from everywhere: as the origin sees it
                 const LightSample seen = light_sample(scene, light, sample, {Vec3(0), Vec3(0), scene.size});
                 color = seen.color;
-                return FarLanes{seen.toward, seen.target, seen.irradiance};
+                return FarLightLanes{seen.toward, seen.target, seen.irradiance};
             }
         },
         scene.lights[light].kind);

@@ -13,13 +13,13 @@ namespace trilens {
 // One sample of a light, with all that is the same at every point.
 
 /// Beyond the scene: a directional light's, an environment's.
-struct FarLanes {
+struct FarLightLanes {
     Vec3 toward{0}, far{0};  // toward: unit; far: the same direction, longer than the scene
     double irradiance = 0;   // on a surface that faces it
 };
 
 /// A point's light, all around or in a cone about a direction.
-struct PointLanes {
+struct PointLightLanes {
     Vec3 position{0};
     double intensity = 0;
     bool is_spot = false;
@@ -28,27 +28,28 @@ struct PointLanes {
 };
 
 /// A part of a flat light; shadow rays end at `target`.
-struct FlatLanes {
+struct FlatLightLanes {
     FlatPart part;
     Vec3 target{0};
 };
 
 /// A place on the disk that a point sees of a sphere.
-struct SphereLanes {
+struct SphereLightLanes {
     SphereLight light;
     double intensity = 0;
     Vec2 disk{0};  // of radius 1
 };
 
 /// A direction above a point's own plane: `above` has it about +Z.
-struct HemisphereLanes {
+struct HemisphereLightLanes {
     Vec3 above{0};  // unit
     double intensity = 0, count = 1;
     double far = 0;  // length of shadow rays
 };
 
 /// One sample of a light, white, as all points of a batch are asked about it.
-using LightLanes = std::variant<FarLanes, PointLanes, FlatLanes, SphereLanes, HemisphereLanes>;
+using LightLanes =
+    std::variant<FarLightLanes, PointLightLanes, FlatLightLanes, SphereLightLanes, HemisphereLightLanes>;
 
 /// Sample `sample` < sample_count() of a light of the scene. The sample's own color, which is white but for
 /// an environment's, is put into `color`.
