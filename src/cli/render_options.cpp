@@ -187,9 +187,6 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (is_vector(format) && (options.max_error >= 0 || options.certify))
         throw UsageError("--max-error and --certify are for pictures of pixels; an ." + format +
                          " shows the facets undivided");
-    if (options.max_error >= 0 && (options.engine == "envmap" || options.engine == "planar"))
-        throw UsageError("--max-error divides the facets of the exact engine, not of --engine " +
-                         options.engine);
     if (!options.display_server.empty() && (is_vector(format) || format.empty()))
         throw UsageError("--display-server shows pictures of pixels: it needs -o OUT.exr or OUT.png");
     if (!options.scene.aov.empty() && !format.empty() && format != "exr")

@@ -19,10 +19,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 static_assert(kShadeLanes % kWidth == 0);
 
-HWY_INLINE Vector load(const ShadeLanes3& from, std::size_t first) {
-    return vector_at(from.x + first, from.y + first, from.z + first);
-}
-
 HWY_INLINE Truth is_positive(Number x) {
     return hn::Gt(x, number(0));
 }
@@ -119,7 +115,6 @@ HWY_INLINE Seen see(const HemisphereLightLanes& light, const Vector& position, c
 
 template <typename Light>
 HWY_INLINE void find_light_of(ShadeBatch& batch, const Light& light, bool casts_shadows) {
-    constexpr double kInversePi = 0.31830988618379067154;
     batch.lit = 0;
     for (std::size_t first = 0; first < batch.count; first += kWidth) {
         const Vector normal = load(batch.normal, first);
@@ -131,19 +126,16 @@ HWY_INLINE void find_light_of(ShadeBatch& batch, const Light& light, bool casts_
             // Light that arrives from behind a flat triangle is in the triangle's own shadow.
             const Truth before = is_positive(dot(load(batch.geometric_normal, first), seen.toward));
             lit = hn::And(lit, hn::Or(truth_of(batch.smooth >> first), before));
-            const Vector way = minus(seen.target, load(batch.shadow_start, first));
-            hn::Store(way.x, kTag, batch.way.x + first);
-            hn::Store(way.y, kTag, batch.way.y + first);
-            hn::Store(way.z, kTag, batch.way.z + first);
+            store(minus(seen.target, load(batch.shadow_start, first)), batch.way, first);
         }
-        hn::Store(hn::Mul(hn::Mul(number(kInversePi), seen.irradiance), cosine), kTag,
+        hn::Store(hn::Mul(hn::Mul(number(std::numbers::inv_pi), seen.irradiance), cosine), kTag,
                   batch.irradiance + first);
         batch.lit |= bits_of(lit) << first;
     }
 }
 
 void find_light_here(ShadeBatch& batch, const LightLanes& light, bool casts_shadows) {
-    std::visit([&](const auto& kind) { find_light_of(batch, kind, casts_shadows); }, light);
+    std::visit([&](const auto& kind) { find_light_of(batch, kind, casts_shadows); }, light.kind);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -182,28 +174,27 @@ PointLightLanes lanes_of(const SpotLight& light, double intensity) {
 
 }  // namespace
 
-LightLanes light_lanes(const ShadeScene& scene, std::size_t light, std::size_t sample, Vec3& color) {
+LightLanes light_lanes(const ShadeScene& scene, std::size_t light, std::size_t sample) {
     const double intensity = scene.lights[light].intensity;
-    color = Vec3(1);
     return std::visit(
         [&](const auto& kind) -> LightLanes {
             using Kind = std::decay_t<decltype(kind)>;
             if constexpr (requires { part_of(kind, intensity, sample); }) {
                 const FlatPart part = part_of(kind, intensity, sample);
-                return FlatLightLanes{part, before_flat_light(part, scene.size)};
+                return {FlatLightLanes{part, before_flat_light(part, scene.size)}};
             } else if constexpr (requires { lanes_of(kind, intensity); }) {
-                return lanes_of(kind, intensity);
+                return {lanes_of(kind, intensity)};
             } else if constexpr (std::is_same_v<Kind, SphereLight>) {
                 const auto count = static_cast<std::size_t>(kind.samples);
-                return SphereLightLanes{kind, intensity, disk_place(stratified_place(sample, count))};
+                return {SphereLightLanes{kind, intensity, disk_place(stratified_place(sample, count))}};
             } else if constexpr (std::is_same_v<Kind, AmbientLight>) {
                 const auto count = static_cast<std::size_t>(kind.samples);
-                return HemisphereLightLanes{hemisphere_direction(sample, count), intensity,
-                                            static_cast<double>(count), occlusion_distance(kind, scene.size)};
+                return {HemisphereLightLanes{hemisphere_direction(sample, count), intensity,
+                                             static_cast<double>(count),
+                                             occlusion_distance(kind, scene.size)}};
             } else {  // the same from everywhere: as the origin sees it
                 const LightSample seen = light_sample(scene, light, sample, {Vec3(0), Vec3(0), scene.size});
-                color = seen.color;
-                return FarLightLanes{seen.toward, seen.target, seen.irradiance};
+                return {FarLightLanes{seen.toward, seen.target, seen.irradiance}, seen.color};
             }
         },
         scene.lights[light].kind);

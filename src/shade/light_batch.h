@@ -47,16 +47,17 @@ struct HemisphereLightLanes {
     double far = 0;  // length of shadow rays
 };
 
-/// One sample of a light, white, as all points of a batch are asked about it.
-using LightLanes =
-    std::variant<FarLightLanes, PointLightLanes, FlatLightLanes, SphereLightLanes, HemisphereLightLanes>;
+/// One sample of a light as all points of a batch are asked about it.
+struct LightLanes {
+    std::variant<FarLightLanes, PointLightLanes, FlatLightLanes, SphereLightLanes, HemisphereLightLanes> kind;
+    Vec3 color{1};  // as LightSample has it
+};
 
-/// Sample `sample` < sample_count() of a light of the scene. The sample's own color, which is white but for
-/// an environment's, is put into `color`.
-LightLanes light_lanes(const ShadeScene& scene, std::size_t light, std::size_t sample, Vec3& color);
+/// Sample `sample` < sample_count() of a light of the scene.
+LightLanes light_lanes(const ShadeScene& scene, std::size_t light, std::size_t sample);
 
-/// What would come of it where nothing is in the way: the batch's way, irradiance and lit. The same bits as
-/// light_sample() gives for each point.
+/// What would come of it, white, where nothing is in the way: the batch's way, irradiance and lit. The same
+/// bits as light_sample() gives for each point.
 void find_light(ShadeBatch& batch, const LightLanes& light, bool casts_shadows);
 
 }  // namespace trilens

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 namespace {
-
-constexpr double kInversePi = 0.31830988618379067154;
 
 struct Frame {
     Vec3 position, geometric_normal, normal;  // unit, both on the viewer's side
@@ -85,7 +84,7 @@ void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, V
         const double cosine = dot(frame.normal, sample.toward);
         if (cosine <= 0 || sample.irradiance == 0) continue;
         if (shadows && is_shadowed(scene, light, frame, sample)) continue;
-        double irradiance = kInversePi * sample.irradiance * cosine;
+        double irradiance = std::numbers::inv_pi * sample.irradiance * cosine;
         if (shadows && scene.let_through)
             irradiance *= scene.let_through({frame.shadow_start, sample.target - frame.shadow_start});
         arriving += irradiance * (sample.color * light.color);
@@ -112,7 +111,7 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
         for (std::size_t l = 0; l < scene.lights.size(); ++l)
             if (has_followed_light(scene.lights[l]))
                 caustic +=
-                    kInversePi *
+                    std::numbers::inv_pi *
                     scene.caustic(
                         l, {frame.position, frame.geometric_normal, frame.normal, frame.shadow_start, {}});
     return outgoing_radiance(look_at(scene, hit, texels_at(scene, seen)), {.matt = arriving + caustic});

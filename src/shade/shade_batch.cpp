@@ -15,15 +15,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 static_assert(kShadeLanes % kWidth == 0);
 
-HWY_INLINE Vector load(const ShadeLanes3& from, std::size_t first) {
-    return vector_at(from.x + first, from.y + first, from.z + first);
-}
-HWY_INLINE void store(const Vector& v, ShadeLanes3& to, std::size_t first) {
-    hn::Store(v.x, kTag, to.x + first);
-    hn::Store(v.y, kTag, to.y + first);
-    hn::Store(v.z, kTag, to.z + first);
-}
-
 /// The lanes first .. first + kWidth - 1 of a batch.
 struct Lanes {
     ShadeBatch& batch;

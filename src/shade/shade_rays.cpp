@@ -263,15 +263,13 @@ ArrivedLight Shaded::arrived(std::size_t lane) const {
 
 /// One sample of a light as each lane sees it; gives its colour beside the light's.
 Vec3 Shaded::find_sample(std::size_t light, std::size_t sample) {
-    Vec3 color;
-    const LightLanes lanes = light_lanes(scene, light, sample, color);
+    const LightLanes lanes = light_lanes(scene, light, sample);
     find_light(batch, lanes, is_hindered(scene.lights[light]) && scene.occluded);
-    return color;
+    return lanes.color;
 }
 
 /// What comes over optics.
 void Shaded::add_caustic(std::size_t light, ShadeBatch::Bits wanted) {
-    constexpr double kOverPi = 0.31830988618379067154;
     for_each_of(wanted, [&](std::size_t i) {
         if (seen[i]->without_caustics) return;
         Receiver receiver;
@@ -282,7 +280,7 @@ void Shaded::add_caustic(std::size_t light, ShadeBatch::Bits wanted) {
         if (seen[i]->footprint) receiver.sides = *seen[i]->footprint;
         receiver.triangle = seen[i]->hit->triangle;
         receiver.exact = seen[i]->exact_caustics;
-        caustic[i] += kOverPi * scene.caustic(light, receiver);
+        caustic[i] += std::numbers::inv_pi * scene.caustic(light, receiver);
     });
 }
 

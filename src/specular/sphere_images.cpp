@@ -119,12 +119,6 @@ HWY_INLINE Vector far_start(const EyeAndPoint& pair, const Edges& of_eye, const 
     return either(hn::Gt(dot(middle, between), number(0)), opposite(middle), middle);
 }
 
-HWY_INLINE void store(const Vector& v, PointLanes& to, std::size_t first) {
-    hn::Store(v.x, kTag, to.x + first);
-    hn::Store(v.y, kTag, to.y + first);
-    hn::Store(v.z, kTag, to.z + first);
-}
-
 void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
                      SphereZeros& result) {
     const Number by_radius = number(1 / sphere.radius);

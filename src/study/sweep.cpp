@@ -13,6 +13,7 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "base/util/version.h"
+#include "render/engines/engine.h"
 #include "render/picture/picture.h"
 #include "study/libraries.h"
 #include "study/sweep_subjects.h"
@@ -195,7 +196,7 @@ RunKeys keys_of(SweepJob& job, const Coordinates& point) {
     const SubjectFacts& facts = sweepable_facts(*job.subjects, request);
     const std::string seen = code_digest() + "\n" + facts.camera + "\n" + facts.digest;
     const PictureRequest& picture = request.picture;
-    check_engine(picture);
+    check_engine(picture.frame, picture.engine.engine);
     const std::string of_truth =
         job.truth == Engine::kFacetsTruth ? picture_key(picture) : window_key(picture.layers);
     return {seen + "\n" + picture_key(picture), seen + "\n" + engine_name(job.truth) + "\n" + of_truth,

@@ -44,6 +44,17 @@ HWY_INLINE Vector vector(const Vec3& v) {
 HWY_INLINE Vector vector_at(const double* x, const double* y, const double* z) {
     return {hn::Load(kTag, x), hn::Load(kTag, y), hn::Load(kTag, z)};
 }
+/// Of a structure of arrays x, y and z, aligned: its elements from `first`, a multiple of kWidth, on.
+template <typename Arrays>
+HWY_INLINE Vector load(const Arrays& from, std::size_t first) {
+    return vector_at(from.x + first, from.y + first, from.z + first);
+}
+template <typename Arrays>
+HWY_INLINE void store(const Vector& v, Arrays& to, std::size_t first) {
+    hn::Store(v.x, kTag, to.x + first);
+    hn::Store(v.y, kTag, to.y + first);
+    hn::Store(v.z, kTag, to.z + first);
+}
 HWY_INLINE Vector plus(const Vector& a, const Vector& b) {
     return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }

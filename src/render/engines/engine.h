@@ -46,7 +46,11 @@ class Viewer {
     virtual FragmentKey key_of(const SampleViews& views, const SampleView& view) const = 0;
 };
 
-/// A viewer of `world`, which must outlive it. Throws InputError where the camera cannot show what the scene
+/// Throws UsageError where what is asked of facets is no matter of the engine's: an error (max_error) of
+/// engines that show something else, and a proof (certify) of engines whose facets stand for no exact paths.
+void check_engine(const FrameParams& frame, Engine engine);
+
+/// A viewer of `world`, which must outlive it. Throws as check_engine, and InputError where the camera cannot show what the scene
 /// has, or the optics have too many facets to hold.
 std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
                                     const Warn& warn);

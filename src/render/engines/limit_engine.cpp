@@ -14,8 +14,21 @@
 
 namespace trilens {
 
+void check_engine(const FrameParams& frame, Engine engine) {
+    if (frame.max_error && (engine == Engine::kEnvironment || engine == Engine::kPlanar))
+        throw UsageError(
+            "an error that is asked for (--max-error) divides the facets of the exact engine, not of engine "
+            "\"" +
+            engine_name(engine) + "\"");
+    // Proofs are of facets that stand for exact paths.
+    if (frame.certify && (!follows_paths(engine) || engine == Engine::kLimitTruth))
+        throw UsageError("what facets show is proven (certify), not what engine \"" + engine_name(engine) +
+                         "\" draws");
+}
+
 std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
                                     const Warn& warn) {
+    check_engine(frame, engine.engine);
     prepare_shadows(world);
     if (has_caustics(world)) warn_of_lost_light(world, caustic_lights(world), warn);
     if (engine.engine == Engine::kLimitTruth) {

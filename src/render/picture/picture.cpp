@@ -205,23 +205,9 @@ void collect_strip(const std::vector<Channel>& channels, int first, int rows, Im
 
 }  // namespace
 
-void check_engine(const PictureRequest& request) {
-    const Engine engine = request.engine.engine;
-    if (request.frame.max_error && (engine == Engine::kEnvironment || engine == Engine::kPlanar))
-        throw UsageError(
-            "an error that is asked for (max-error) divides the facets of the exact engine, not "
-            "of engine \"" +
-            engine_name(engine) + "\"");
-    // Proofs are of facets that stand for exact paths.
-    if (request.frame.certify && (!follows_paths(engine) || engine == Engine::kLimitTruth))
-        throw UsageError("what facets show is proven (certify), not what engine \"" + engine_name(engine) +
-                         "\" draws");
-}
-
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
                      const Warn& warn, const StripSink* sink) {
     const LayerRequest layers = checked_layers(world, request.layers);
-    check_engine(request);
     check_film_fits(world, layers, sink != nullptr);
     warn_of_roughness(world, request.frame, request.engine, warn);
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);

@@ -11,10 +11,6 @@ namespace trilens {
 class MarkPainter;
 struct World;
 
-/// Throws UsageError where what is asked of facets is no matter of the engine's: an error (max_error) of
-/// engines that show something else, and a proof (certify) of engines whose facets stand for no exact paths.
-void check_engine(const PictureRequest& request);
-
 /// Draws the picture. Warns of what the user would want to know: optics off screen, pixels without a ray.
 /// Throws UsageError for a window or layers that the film does not have, InputError where the film does not
 /// fit the machine's memory, and as make_viewer and draw_layers do. `sink`: as draw_layers has it.

@@ -294,24 +294,23 @@ LensPrescription read_surfaces(const Node& surfaces, std::span<const Glass> glas
     return lens;
 }
 
-/// JSON of what the scene's schema defines by that name.
-Json parse_defined(const std::string& bytes, const std::string& file, const char* name) {
-    Json json = parse_json(bytes, file);
+/// Throws InputError unless it is what the scene's schema defines by that name.
+void check_defined(const Json& json, const std::string& file, const char* name) {
     const Json& definitions = scene_schema_json().at("definitions");
     Json alone = definitions.at(name);
     alone["definitions"] = definitions;
     if (const auto found = find_problem(json, alone)) fail_at(file, found->place, found->message);
-    return json;
 }
 
 LensPrescription parse_lens_json(const std::string& bytes, const std::string& file,
                                  std::span<const Glass> glasses) {
-    if (const Json json = parse_json(bytes, file); json.is_object() && json.contains("version"))
+    const Json json = parse_json(bytes, file);
+    if (json.is_object() && json.contains("version"))
         fail_at(
             file, "/version",
             "this is a scene: what is asked for is a prescription, as the 'file' or the 'surfaces' of one of "
             "its lenses");
-    const Json json = parse_defined(bytes, file, "lens");
+    check_defined(json, file, "lens");
     const Node root{json, "", file};
     if (!root.has("surfaces")) root["file"].fail("a lens file has its own 'surfaces'");
     if (root.has("glasses")) root["glasses"].fail("are named beside a lens file, not in it");
@@ -323,7 +322,8 @@ LensPrescription parse_lens_json(const std::string& bytes, const std::string& fi
 }  // namespace
 
 LensSide parse_side(const std::string& bytes, const std::string& file) {
-    const Json json = parse_defined(bytes, file, "lensSide");
+    const Json json = parse_json(bytes, file);
+    check_defined(json, file, "lensSide");
     check_lens_side({json, "", file});
     LensSide side;
     from_json_value(json, side);
