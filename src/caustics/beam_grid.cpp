@@ -50,10 +50,15 @@ void BeamGrid::start(int cells) {
     for (Id t = 0; t < triangles_.size(); ++t) link(t);
 }
 
-void BeamGrid::trace_new_corners() {
+void BeamGrid::trace_new_corners(const Progress& progress) {
     paths_.resize(places_.size());
+    LoopProgress done(progress, static_cast<double>(places_.size() - traced_));
     parallel_for(places_.size() - traced_, 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = traced_ + from; i < traced_ + to; ++i) paths_[i] = paths_at(places_[i]);
+        for (std::size_t i = traced_ + from; i < traced_ + to; ++i) {
+            done.stop_if_cancelled();
+            paths_[i] = paths_at(places_[i]);
+        }
+        done.add(static_cast<double>(to - from));
     });
     for (std::size_t i = traced_; i < places_.size(); ++i)
         for (const LightPath& path : paths_[i].paths)
@@ -173,10 +178,11 @@ void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
     std::vector<Id> asked(triangles_.size());
     for (Id t = 0; t < asked.size(); ++t) asked[t] = t;
     coarse_ = 0;
-    while (!asked.empty()) {
-        if (progress.cancelled()) throw Interrupted();
+    // Each round takes triangles of one level, and neighbours that they need.
+    const double rounds = params.most_levels + 1;
+    for (double round = 0; !asked.empty(); ++round) {
         for (const Id t : asked) middle_of(triangles_[t].corner[0], triangles_[t].corner[1]);
-        trace_new_corners();
+        trace_new_corners(progress.part(std::min(round / rounds, 1.0), round < rounds ? 1 / rounds : 0));
         std::vector<char> coarse(asked.size());
         parallel_for(asked.size(), 256, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i) coarse[i] = is_too_coarse(triangles_[asked[i]], params);
@@ -196,7 +202,7 @@ void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
         for (Id t = 0; t < triangles_.size(); ++t)
             if (t >= before || triangles_[t].corner != was[t].corner) asked.push_back(t);
     }
-    trace_new_corners();
+    trace_new_corners(progress.part(1, 0));
 }
 
 }  // namespace trilens

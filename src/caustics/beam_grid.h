@@ -33,7 +33,7 @@ class BeamGrid {
 
     BeamGrid(const LightSpace& space, const BeamSource& source, const LightWindow& window, Id first);
 
-    /// Throws Interrupted once `progress` says so.
+    /// Throws Interrupted soon after `progress` says so.
     void divide(const BeamGridParams& params, const Progress& progress);
 
     const LightWindow& window() const { return window_; }
@@ -52,7 +52,7 @@ class BeamGrid {
     using Edge = std::uint64_t;
     static Edge edge_of(Id a, Id b) { return (static_cast<Edge>(std::min(a, b)) << 32) | std::max(a, b); }
     void start(int cells);
-    void trace_new_corners();
+    void trace_new_corners(const Progress& progress);
     Id middle_of(Id a, Id b);
     bool is_too_coarse(const Triangle& triangle, const BeamGridParams& params) const;
     struct Corners;

@@ -25,24 +25,31 @@ constexpr double kSmallFace = 0.004;
 /// closely.
 constexpr double kFaintShare = 0.05;
 
+/// Of the making of beams: until windows are divided, and until their borders are found.
+constexpr double kDividingShare = 0.2, kBorderShare = 0.6;
+
 }  // namespace
 
 BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
                      const std::vector<std::vector<Vec3>>& outlines, const Progress& progress)
     : space_(space), source_(source), tolerance_(params.tolerance) {
-    for (std::size_t i = 0; i < outlines.size(); ++i) {
-        if (outlines[i].empty()) continue;
-        for (const LightWindow& window : windows_on(source, outlines[i], space.reach)) {
-            BeamGrid grid(space, source, window, static_cast<Id>(i));
-            grid.divide(params, progress);
-            losses_.coarse += grid.coarse_count();
-            for (Id corner = 0; corner < grid.corner_count(); ++corner)
-                losses_.most = most_cut(losses_.most, grid.cut(corner));
-            add_beams(grid, beams_);
-        }
-        progress(static_cast<double>(i + 1) / static_cast<double>(outlines.size()));
+    std::vector<std::pair<Id, LightWindow>> windows;
+    for (std::size_t i = 0; i < outlines.size(); ++i)
+        if (!outlines[i].empty())
+            for (const LightWindow& window : windows_on(source, outlines[i], space.reach))
+                windows.emplace_back(static_cast<Id>(i), window);
+    const double share = 1.0 / static_cast<double>(windows.size());
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+        const double from = (kDividingShare + kBorderShare) * share * static_cast<double>(w);
+        BeamGrid grid(space, source, windows[w].second, windows[w].first);
+        grid.divide(params, progress.part(from, kDividingShare * share));
+        losses_.coarse += grid.coarse_count();
+        for (Id corner = 0; corner < grid.corner_count(); ++corner)
+            losses_.most = most_cut(losses_.most, grid.cut(corner));
+        add_beams(grid, beams_, progress.part(from + kDividingShare * share, kBorderShare * share));
     }
-    refined_ = std::make_unique<RefinedBeams>(space_, source_, beams_);
+    const double made = kDividingShare + kBorderShare;
+    refined_ = std::make_unique<RefinedBeams>(space_, source_, beams_, progress.part(made, 1 - made));
     tree_ = BeamTree(
         beams_, [&](Id beam) -> const auto& { return refined_->middles(beam); });
 }
@@ -54,24 +61,51 @@ void BeamLight::receive_on(std::shared_ptr<const ReceiverFaces> faces) {
     on_face_ = std::make_unique<Lazy<PlaneBeams>[]>(2 * faces_->faces().size());
 }
 
+/// Whether it is a face that is worth it.
+bool BeamLight::gathers_on(const ReceiverSide& on) const {
+    return faces_ && on.face != kNone && faces_->faces()[on.face].radius >= kSmallFace * space_.size;
+}
+
+double BeamLight::reach_beyond_faces() const {
+    return kMostBent * tolerance_ * space_.size;
+}
+
 /// None: it lies on no face that is worth it.
 const PlaneBeams* BeamLight::plane_beams(const Receiver& receiver) const {
-    const Id at = faces_ ? faces_->face_of(receiver.triangle) : kNone;
-    if (at == kNone) return nullptr;
-    const ReceiverFace& face = faces_->faces()[at];
-    if (face.radius < kSmallFace * space_.size) return nullptr;
-    const bool is_back = dot(face.normal, receiver.normal) < 0;
-    return &on_face_[2 * at + is_back].get([&] {
+    if (!faces_) return nullptr;
+    return plane_beams(faces_->side_of(receiver.triangle, receiver.normal), {{}, receiver.cancel});
+}
+
+const PlaneBeams* BeamLight::plane_beams(const ReceiverSide& on, const Progress& progress) const {
+    if (!gathers_on(on)) return nullptr;
+    const ReceiverFace& face = faces_->faces()[on.face];
+    return &on_face_[2 * on.face + on.is_back].get([&] {
         PlaneBeamsParams params;
         params.tolerance = tolerance_ * space_.size;
-        params.reach = kMostBent * params.tolerance;
+        params.reach = reach_beyond_faces();
         for (const BeamEnd& end : beams_.ends)
             params.brightest = std::max(params.brightest, end.light.x + end.light.y + end.light.z);
         params.faint_light = kFaintShare * refined_->mean_light();
         params.same_place = kSamePlace * space_.size;
         return std::make_unique<PlaneBeams>(PlaneBeams::Source{beams_, tree_, *refined_}, face,
-                                            is_back ? -face.normal : face.normal, params);
+                                            on.is_back ? -face.normal : face.normal, params, progress);
     });
+}
+
+std::size_t BeamLight::count_near(const ReceiverSide& on) const {
+    if (is_gathered(on)) return 0;
+    const ReceiverFace& face = faces_->faces()[on.face];
+    std::size_t count = 0;
+    tree_.for_each_near(face.center, face.radius + reach_beyond_faces(), [&](Id) { ++count; });
+    return count;
+}
+
+void BeamLight::gather(const ReceiverSide& on, const Progress& progress) const {
+    plane_beams(on, progress);
+}
+
+bool BeamLight::is_gathered(const ReceiverSide& on) const {
+    return !gathers_on(on) || on_face_[2 * on.face + on.is_back].find();
 }
 
 /// A triangle that falls on a receiver's plane.
@@ -93,16 +127,15 @@ Vec3 BeamLight::left_of(const LightHistory& history, const Vec3& origin, const R
 }
 
 /// Irradiance on the receiver's plane times the cosine that counts; none where nothing comes.
-std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& receiver) const {
-    const std::optional<FootprintPart> here = part_at_footprint(piece.fallen, piece.plane);
-    if (!here) return std::nullopt;
+std::optional<Vec3> BeamLight::light_of(const Piece& piece, const FootprintPart& here,
+                                        const Receiver& receiver) const {
     Vec3 light(0), weights(0);
     for (int k = 0; k < 3; ++k) {
         const auto c = static_cast<std::size_t>(k);
-        light += here->weights[k] * piece.fallen.share[c] * piece.fallen.light[c];
-        weights += here->weights[k] * piece.fallen.weights[c];
+        light += here.weights[k] * piece.fallen.share[c] * piece.fallen.light[c];
+        weights += here.weights[k] * piece.fallen.weights[c];
     }
-    const double density = here->density / piece.plane.unit_area;
+    const double density = here.density / piece.plane.unit_area;
     if (is_plain(piece, receiver)) return density * light;
     Vec3 origin(0), direction(0);
     for (int k = 0; k < 3; ++k) {
@@ -123,21 +156,34 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& rece
 
 /// Whether all of its light comes, and counts as it falls on the plane, wherever it comes from.
 bool BeamLight::is_plain(const Piece& piece, const Receiver& receiver) const {
-    return piece.way == Way::kFree && !space_.veil && receiver.shading_normal == piece.plane.normal &&
+    return piece.way == Way::kFree && is_plain(piece.plane, receiver) &&
            beams_.histories[piece.beam.history].medium == kNone;
 }
 
-/// Calls use(light) for what arrives by each beam, or each of its exact pieces.
+/// Whether that may be so at the receiver.
+bool BeamLight::is_plain(const ReceiverPlane& plane, const Receiver& receiver) const {
+    return !space_.veil && receiver.shading_normal == plane.normal;
+}
+
+/// Calls use(light) for what arrives by each beam, or each of its exact pieces, or by all of several beams.
 template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
-    const auto use_piece = [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
-        if (const auto light = light_of({beams_.beams[index], corners, fallen, plane, way}, receiver))
+    const auto use_part = [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen,
+                              const FootprintPart& part) {
+        if (const auto light = light_of({beams_.beams[index], corners, fallen, plane, way}, part, receiver))
             use(*light);
     };
-    if (!receiver.exact)
-        if (const PlaneBeams* fallen = plane_beams(receiver)) return fallen->for_each_piece(plane, use_piece);
-    const double bent = kMostBent * tolerance_ * space_.size;
+    const auto use_piece = [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
+        if (const auto part = part_at_footprint(fallen, plane)) use_part(index, way, corners, fallen, *part);
+    };
+    if (const PlaneBeams* on_plane = receiver.exact ? nullptr : plane_beams(receiver)) {
+        if (!plane.has_footprint) return on_plane->for_each_piece(plane, use_piece);
+        return on_plane->for_each_part(
+            plane, is_plain(plane, receiver), [&](const Vec3& light) { use(light / plane.unit_area); },
+            use_part);
+    }
+    const double bent = reach_beyond_faces();
     const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
     tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? bent : 0), [&](Id index) {
         Way way = way_to(beams_, beams_.beams[index], plane, kSamePlace * space_.size);
@@ -178,6 +224,7 @@ bool BeamLight::is_hidden(const Piece& piece, const Vec3& from, const Vec3& orig
 }
 
 Vec3 BeamLight::irradiance(const Receiver& receiver) const {
+    if (receiver.cancel && receiver.cancel->load(std::memory_order_relaxed)) throw Interrupted();
     Vec3 sum(0);
     for_each_arrival(receiver, [&](const Vec3& light) { sum += light; });
     return sum;

@@ -13,6 +13,7 @@
 #include "caustics/beam_tree.h"
 #include "caustics/beams.h"
 #include "caustics/exact_arrivals.h"
+#include "caustics/footprint.h"
 #include "caustics/receiver_faces.h"
 #include "shade/receiver.h"
 
@@ -35,6 +36,7 @@ struct BeamLosses {
 class BeamLight {
   public:
     /// `space` and what it points to must live longer. `outlines`: points on each optic's surface, by optic.
+    /// Throws Interrupted soon after `progress` says so.
     BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
               const std::vector<std::vector<Vec3>>& outlines, const Progress& progress = {});
 
@@ -46,8 +48,16 @@ class BeamLight {
     /// asked for, and kept. Before any is asked for.
     void receive_on(std::shared_ptr<const ReceiverFaces> faces);
 
+    /// Gathers it now. Throws Interrupted soon after `progress` says so.
+    void gather(const ReceiverSide& on, const Progress& progress) const;
+    /// Whether that would find nothing to do.
+    bool is_gathered(const ReceiverSide& on) const;
+    /// Beams that it would look at.
+    std::size_t count_near(const ReceiverSide& on) const;
+
     /// Irradiance at the receiver, linear Rec.709, of all that comes over optics: of the beams as they are,
     /// or where the receiver asks for it of beams divided by exact rays until they are flat at its footprint.
+    /// Throws Interrupted as the receiver has it.
     Vec3 irradiance(const Receiver& receiver) const;
 
     /// Beams that hold the point and whose way is free.
@@ -66,11 +76,16 @@ class BeamLight {
     struct Piece;
     template <typename Use>
     void for_each_arrival(const Receiver& receiver, const Use& use) const;
-    std::optional<Vec3> light_of(const Piece& piece, const Receiver& receiver) const;
+    std::optional<Vec3> light_of(const Piece& piece, const FootprintPart& here,
+                                 const Receiver& receiver) const;
     bool is_plain(const Piece& piece, const Receiver& receiver) const;
+    bool is_plain(const ReceiverPlane& plane, const Receiver& receiver) const;
     Vec3 left_of(const LightHistory& history, const Vec3& origin, const Receiver& receiver) const;
     bool comes(const ExactArrival& arrival, const Receiver& receiver) const;
+    bool gathers_on(const ReceiverSide& on) const;
+    double reach_beyond_faces() const;
     const PlaneBeams* plane_beams(const Receiver& receiver) const;
+    const PlaneBeams* plane_beams(const ReceiverSide& on, const Progress& progress) const;
     bool is_hidden(const Piece& piece, const Vec3& from, const Vec3& origin) const;
 
     LightSpace space_;

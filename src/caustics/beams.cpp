@@ -22,11 +22,12 @@ struct HistoryBorder {
     Vec2 place{0};
     LightPath path;
 
-    void find(const BeamGrid& grid, PathsOnSide& known) {
+    void find(const BeamGrid& grid, PathsOnSide& known, const LoopProgress& progress) {
         Vec2 low = grid.place(inside), high = grid.place(outside);
         place = low;
         path = *like;
         for (int i = 0; i < kBisections; ++i) {
+            progress.stop_if_cancelled();
             const Vec2 middle = 0.5 * (low + high);
             const auto [at, is_new] = known.try_emplace({middle.x, middle.y});
             if (is_new) at->second = grid.paths_at(middle);
@@ -57,7 +58,7 @@ HistoryKey key_of(const LightHistory& history) {
 class BeamMaker {
   public:
     BeamMaker(const BeamGrid& grid, Beams& beams) : grid_(grid), beams_(beams) {}
-    void make();
+    void make(const Progress& progress);
 
   private:
     using Key = std::tuple<Id, Id, Id>;  // inside, outside or kNone at a corner, history
@@ -65,7 +66,7 @@ class BeamMaker {
     Id history_of(const LightHistory& path);
     const LightPath* path_at(Id corner, Id history) const;
     std::vector<Id> histories_of(const BeamGrid::Triangle& triangle) const;
-    void find_borders();
+    void find_borders(const Progress& progress);
     Id end_of(Id corner, Id history);
     Id border_end(Id inside, Id outside, Id history);
     Id add_end(const Vec2& place, const LightPath& path);
@@ -103,7 +104,7 @@ std::vector<Id> BeamMaker::histories_of(const BeamGrid::Triangle& triangle) cons
     return all;
 }
 
-void BeamMaker::find_borders() {
+void BeamMaker::find_borders(const Progress& progress) {
     for (const BeamGrid::Triangle& triangle : grid_.triangles())
         for (const Id history : histories_of(triangle))
             for (std::size_t k = 0; k < 3; ++k) {
@@ -119,11 +120,13 @@ void BeamMaker::find_borders() {
         by_side[std::minmax(borders_[i].inside, borders_[i].outside)].push_back(i);
     std::vector<const std::vector<std::size_t>*> sides;
     for (const auto& [side, borders] : by_side) sides.push_back(&borders);
+    LoopProgress done(progress, static_cast<double>(sides.size()));
     parallel_for(sides.size(), 4, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             PathsOnSide known;
-            for (const std::size_t border : *sides[i]) borders_[border].find(grid_, known);
+            for (const std::size_t border : *sides[i]) borders_[border].find(grid_, known, done);
         }
+        done.add(static_cast<double>(to - from));
     });
 }
 
@@ -233,14 +236,14 @@ void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
     }
 }
 
-void BeamMaker::make() {
+void BeamMaker::make(const Progress& progress) {
     for (std::size_t i = 0; i < beams_.histories.size(); ++i)
         history_.emplace(key_of(beams_.histories[i]), static_cast<Id>(i));
     beams_.windows.push_back(grid_.window());
     at_corner_.resize(grid_.corner_count());
     for (Id corner = 0; corner < at_corner_.size(); ++corner)
         for (const LightPath& path : grid_.paths(corner)) at_corner_[corner].push_back(history_of(path));
-    find_borders();
+    find_borders(progress);
     const std::size_t first_end = beams_.ends.size(), first_beam = beams_.beams.size();
     for (const BeamGrid::Triangle& triangle : grid_.triangles())
         for (const Id history : histories_of(triangle)) add_triangle(triangle, history);
@@ -249,8 +252,8 @@ void BeamMaker::make() {
 
 }  // namespace
 
-void add_beams(const BeamGrid& grid, Beams& beams) {
-    BeamMaker(grid, beams).make();
+void add_beams(const BeamGrid& grid, Beams& beams, const Progress& progress) {
+    BeamMaker(grid, beams).make(progress);
 }
 
 std::vector<Vec3> Beams::flux_by_history() const {

@@ -70,6 +70,9 @@ PieceGrid::PieceGrid(int sides) {
             piece[pieces++] = {at(i, j), at(i + 1, j), at(i, j + 1)};
             if (i + j + 1 < sides) piece[pieces++] = {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
         }
+    for (std::size_t p = 0; p < pieces; ++p)
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t c = 0; c < 6; ++c) of_piece[k][c][p] = quadratic[piece[p][k]][c];
 }
 
 const PieceGrid& PieceGrid::of(int sides) {

@@ -99,10 +99,22 @@ struct PieceGrid {
     std::array<Vec3, kMostCorners> weights;
     std::array<std::array<double, 6>, kMostCorners> quadratic;
     std::array<std::array<std::size_t, 3>, kMostSides * kMostSides> piece;
+    // The quadratic weights of the pieces' corners once more, piece by piece; 0 of pieces that there are not.
+    alignas(64) double of_piece[3][6][kMostSides * kMostSides] = {};
 
     explicit PieceGrid(int sides);
     static const PieceGrid& of(int sides);
 };
+
+/// What the square [-1/2, 1/2]^2 cuts out of each of a curved beam's flat pieces.
+struct CutPieces {
+    static constexpr std::size_t kMost = PieceGrid::kMostSides * PieceGrid::kMostSides;
+    std::size_t count = 0;
+    alignas(64) double share[kMost];      // of the piece: 1 where all of it is inside, whatever its area
+    alignas(64) double weight[3][kMost];  // of its corners at the part's middle, where there is a part
+};
+/// `at`: of the ends and middles. Up to rounding as part_at_footprint() has it of each piece.
+void cut_pieces(const std::array<Vec2, 6>& at, int sides, CutPieces& cut);
 
 template <typename Use>
 void CurvedBeam::for_each_piece(const FallenCurve& curve, double half, int sides, const Use& use) const {

@@ -71,6 +71,7 @@ struct PlaneBeams::Maker {
     const Source& source;
     const ReceiverPlane& plane;
     const PlaneBeamsParams& params;
+    const Progress& progress;
     double half;  // of the square around the face
     Id index;
     Way way;
@@ -78,6 +79,7 @@ struct PlaneBeams::Maker {
     std::vector<Flat> flat;
 
     void add(const BeamEnds& end, const Lazy<BeamDivision>* of, int level) {
+        progress.stop_if_cancelled();
         const BeamDivision& by =
             of ? source.refined.division(index, end, *of) : source.refined.division(index);
         const CurvedBeam beam{source.refined.corners(index, end),
@@ -135,6 +137,8 @@ struct PlaneBeams::Maker {
         Curved one{beam, {at, beam.lights()}, index, way};
         one.sides = sides_of(one.curve, bulge);
         one.mean_light = mean_light(one.curve.light, one.sides);
+        const LightBeam& of = source.beams.beams[index];
+        one.is_plain = way == Way::kFree && source.beams.histories[of.history].medium == kNone;
         curved.push_back(one);
     }
 
@@ -176,13 +180,15 @@ struct PlaneBeams::Maker {
 };
 
 PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec3& normal,
-                       const PlaneBeamsParams& params)
+                       const PlaneBeamsParams& params, const Progress& progress)
     : plane_(plane_of(face, normal)) {
     std::vector<Id> near;
     source.tree.for_each_near(face.center, face.radius + params.reach,
                               [&](Id beam) { near.push_back(beam); });
-    const Maker none{source, plane_, params, face.radius + params.reach, kNone, Way::kUnknown, {}, {}};
+    const Maker none{source, plane_,        params, progress, face.radius + params.reach,
+                     kNone,  Way::kUnknown, {},     {}};
     std::vector<Maker> made(near.size(), none);
+    LoopProgress done(progress, static_cast<double>(near.size()));
     parallel_for(near.size(), 32, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const LightBeam& beam = source.beams.beams[near[i]];
@@ -190,6 +196,7 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
             made[i].way = way_to(source.beams, beam, plane_, params.same_place);
             if (made[i].way != Way::kStopped) made[i].add(corners_of(source.beams, beam).end, nullptr, 0);
         }
+        done.add(static_cast<double>(to - from));
     });
     for (const Maker& one : made) {
         curved_.insert(curved_.end(), one.curved.begin(), one.curved.end());
@@ -205,6 +212,44 @@ PlaneBeams::Box2 PlaneBeams::hull_box(const std::array<Vec2, 6>& at) {
     Box2 box;
     for (const Vec2& point : bezier_points(at)) box.include(point);
     return box;
+}
+
+std::array<Vec2, 6> PlaneBeams::fallen_on(const Curved& one, const Map& map) {
+    std::array<Vec2, 6> at;
+    for (std::size_t k = 0; k < 6; ++k) at[k] = map(one.curve.at[k]);
+    return at;
+}
+
+bool PlaneBeams::is_inside(const std::array<Vec2, 6>& at) {
+    const Box2 box = hull_box(at);
+    return std::max({-box.low.x, -box.low.y, box.high.x, box.high.y}) <= 0.5;
+}
+
+bool PlaneBeams::is_away(const std::array<Vec2, 6>& at) {
+    const std::array<Vec2, 6> hull = bezier_points(at);
+    return is_beyond(hull, 0.5, 0) || is_apart(hull, 0.5);
+}
+
+/// All that comes to the footprint, times its part of the film.
+Vec3 PlaneBeams::light_of(const Curved& one, const std::array<Vec2, 6>& at) {
+    const double measure = one.beam.corners.measure;
+    if (is_inside(at)) return measure * one.mean_light;
+    if (is_away(at)) return Vec3(0);
+    const PieceGrid& grid = PieceGrid::of(one.sides);
+    CutPieces cut;
+    cut_pieces(at, one.sides, cut);
+    std::array<double, 6> weights{};  // of the light at the beam's ends and middles
+    for (std::size_t p = 0; p < grid.pieces; ++p) {
+        if (!(cut.share[p] > 0)) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double weight = cut.share[p] * cut.weight[k][p];
+            const std::array<double, 6>& quadratic = grid.quadratic[grid.piece[p][k]];
+            for (std::size_t c = 0; c < 6; ++c) weights[c] += weight * quadratic[c];
+        }
+    }
+    Vec3 light(0);
+    for (std::size_t c = 0; c < 6; ++c) light += weights[c] * one.curve.light[c];
+    return measure / static_cast<double>(grid.pieces) * light;
 }
 
 PlaneBeams::Box2 PlaneBeams::box_of(std::uint32_t entry) const {

@@ -31,19 +31,27 @@ struct PlaneBeamsParams {
 /// exact rays where those between their six lie beside the quadratic, as at silhouettes. Thread-safe to read.
 class PlaneBeams {
   public:
-    /// `normal`: of the side that receives. The beams and what belongs to them must live longer.
+    /// The beams and what belongs to them must live longer.
     struct Source {
         const Beams& beams;
         const BeamTree& tree;
         const RefinedBeams& refined;
     };
+    /// `normal`: of the side that receives. Throws Interrupted soon after `progress` says so.
     PlaneBeams(const Source& source, const ReceiverFace& face, const Vec3& normal,
-               const PlaneBeamsParams& params);
+               const PlaneBeamsParams& params, const Progress& progress = {});
 
-    /// Calls use(beam, way, corners, fallen) for every piece that may come to the footprint; of beams that
-    /// are stopped on their way for none.
+    /// Calls use(beam, way, corners, fallen) for every piece that may come to the point, which is a
+    /// receiver's without a footprint; of beams that are stopped on their way for none.
     template <typename Use>
-    void for_each_piece(const ReceiverPlane& footprint, const Use& use) const;
+    void for_each_piece(const ReceiverPlane& point, const Use& use) const;
+
+    /// The same of a footprint, in sums: calls use_light(light) with the light, times its part of the film,
+    /// of all that comes there without being asked for its way, and use(beam, way, corners, fallen, part) for
+    /// every other piece. `sums`: whether there are receivers that need not ask (see is_plain).
+    template <typename UseLight, typename Use>
+    void for_each_part(const ReceiverPlane& footprint, bool sums, const UseLight& use_light,
+                       const Use& use) const;
 
   private:
     struct Curved {
@@ -51,7 +59,8 @@ class PlaneBeams {
         FallenCurve curve;
         Id index = kNone;
         Way way = Way::kUnknown;
-        int sides = 4;  // of its pieces
+        int sides = 4;          // of its pieces
+        bool is_plain = false;  // all of it comes, through air
         Vec3 mean_light{0};
     };
     struct Flat {  // what the plane cuts, or lies askew to
@@ -81,7 +90,14 @@ class PlaneBeams {
         Vec2 operator()(const Vec2& at) const { return origin + turn * at; }
     };
     template <typename Use>
-    static void use_curved(const Curved& one, const Map& map, double half, const Use& use);
+    void for_each_near(const Box2& asked, const Use& use) const;
+    static std::array<Vec2, 6> fallen_on(const Curved& one, const Map& map);
+    // Of where a curved beam falls, in a footprint's coordinates.
+    static bool is_inside(const std::array<Vec2, 6>& at);
+    static bool is_away(const std::array<Vec2, 6>& at);
+    static Vec3 light_of(const Curved& one, const std::array<Vec2, 6>& at);
+    template <typename Use>
+    static void use_parts(const Curved& one, const std::array<Vec2, 6>& at, const Use& use);
     template <typename Use>
     static void use_flat(const Flat& one, const Map& map, double half, const Use& use);
     /// Around the Bezier points of a quadratic triangle.
@@ -100,45 +116,81 @@ class PlaneBeams {
 };
 
 template <typename Use>
-void PlaneBeams::for_each_piece(const ReceiverPlane& footprint, const Use& use) const {
-    const Map map = map_to(footprint);
-    const Box2 asked = box_of(footprint, map);
-    const double half = footprint.has_footprint ? 0.5 : 0;
+void PlaneBeams::for_each_near(const Box2& asked, const Use& use) const {
     for (std::size_t n = 0; n < nodes_.size();) {
         const Node& node = nodes_[n];
         if (!node.box.meets(asked)) {
             n = node.skip;
             continue;
         }
-        for (std::uint32_t i = node.first; i < node.end; ++i) {
-            const std::uint32_t entry = order_[i];
-            if (!boxes_[entry].meets(asked)) continue;
-            if (entry < curved_.size())
-                use_curved(curved_[entry], map, half, use);
-            else
-                use_flat(flat_[entry - curved_.size()], map, half, use);
-        }
+        for (std::uint32_t i = node.first; i < node.end; ++i)
+            if (boxes_[order_[i]].meets(asked)) use(order_[i]);
         ++n;
     }
 }
 
 template <typename Use>
-void PlaneBeams::use_curved(const Curved& one, const Map& map, double half, const Use& use) {
-    FallenCurve curve = one.curve;
-    for (Vec2& at : curve.at) at = map(at);
-    const Box2 box = hull_box(curve.at);
-    const bool is_inside = std::max({-box.low.x, -box.low.y, box.high.x, box.high.y}) <= half;
-    if (!is_inside) {
-        one.beam.for_each_piece(curve, half, one.sides,
+void PlaneBeams::for_each_piece(const ReceiverPlane& point, const Use& use) const {
+    const Map map = map_to(point);
+    for_each_near(box_of(point, map), [&](std::uint32_t entry) {
+        if (entry >= curved_.size()) return use_flat(flat_[entry - curved_.size()], map, 0, use);
+        const Curved& one = curved_[entry];
+        one.beam.for_each_piece({fallen_on(one, map), one.curve.light}, 0, one.sides,
                                 [&](const BeamCorners& corners, const FallenBeam& fallen) {
                                     use(one.index, one.way, corners, fallen);
                                 });
-        return;
+    });
+}
+
+template <typename UseLight, typename Use>
+void PlaneBeams::for_each_part(const ReceiverPlane& footprint, bool sums, const UseLight& use_light,
+                               const Use& use) const {
+    const Map map = map_to(footprint);
+    for_each_near(box_of(footprint, map), [&](std::uint32_t entry) {
+        if (entry >= curved_.size()) {
+            use_flat(flat_[entry - curved_.size()], map, 0.5,
+                     [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
+                         if (const auto part = part_at_footprint(fallen, footprint))
+                             use(index, way, corners, fallen, *part);
+                     });
+            return;
+        }
+        const Curved& one = curved_[entry];
+        const std::array<Vec2, 6> at = fallen_on(one, map);
+        if (sums && one.is_plain) {
+            const Vec3 light = light_of(one, at);
+            if (light != Vec3(0)) use_light(light);
+        } else {
+            use_parts(one, at, use);
+        }
+    });
+}
+
+template <typename Use>
+void PlaneBeams::use_parts(const Curved& one, const std::array<Vec2, 6>& at, const Use& use) {
+    FallenBeam fallen;
+    if (is_inside(at)) {
+        for (std::size_t k = 0; k < 3; ++k) fallen.light[k] = one.mean_light;
+        return use(one.index, one.way, one.beam.corners, fallen,
+                   FootprintPart{one.beam.corners.measure, Vec3(1.0 / 3)});
     }
-    FallenBeam whole;
-    whole.measure = one.beam.corners.measure;
-    for (std::size_t k = 0; k < 3; ++k) whole.at[k] = curve.at[k], whole.light[k] = one.mean_light;
-    use(one.index, one.way, one.beam.corners, whole);
+    if (is_away(at)) return;
+    const PieceGrid& grid = PieceGrid::of(one.sides);
+    CutPieces cut;
+    cut_pieces(at, one.sides, cut);
+    const double measure = one.beam.corners.measure / static_cast<double>(grid.pieces);
+    for (std::size_t p = 0; p < grid.pieces; ++p) {
+        if (!(cut.share[p] > 0)) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t n = grid.piece[p][k];
+            fallen.weights[k] = grid.weights[n];
+            fallen.light[k] = Vec3(0);
+            for (std::size_t c = 0; c < 6; ++c) fallen.light[k] += grid.quadratic[n][c] * one.curve.light[c];
+        }
+        use(one.index, one.way, one.beam.corners, fallen,
+            FootprintPart{cut.share[p] * measure,
+                          Vec3(cut.weight[0][p], cut.weight[1][p], cut.weight[2][p])});
+    }
 }
 
 template <typename Use>

@@ -1,6 +1,7 @@
 // Flat parts of the receivers: triangles that lie next to each other in one plane.
 #pragma once
 
+#include <compare>
 #include <vector>
 
 #include "base/raymesh/triangle_scene.h"
@@ -14,6 +15,14 @@ struct ReceiverFace {
     double radius = 0;
 };
 
+/// One side of one of them.
+struct ReceiverSide {
+    Id face = kNone;       // kNone: none of them
+    bool is_back = false;  // where the face's normal does not point to
+
+    auto operator<=>(const ReceiverSide&) const = default;
+};
+
 /// The faces of a scene's triangles. Triangles that follow each other are of one face where all their corners
 /// lie in its plane, to rounding.
 class ReceiverFaces {
@@ -24,6 +33,11 @@ class ReceiverFaces {
     const std::vector<ReceiverFace>& faces() const { return faces_; }
     /// kNone: the triangle has no area, or is none of the scene's.
     Id face_of(Id triangle) const { return triangle < face_of_.size() ? face_of_[triangle] : kNone; }
+    /// On the side to which `outward` points.
+    ReceiverSide side_of(Id triangle, const Vec3& outward) const {
+        const Id face = face_of(triangle);
+        return {face, face != kNone && dot(faces_[face].normal, outward) < 0};
+    }
 
   private:
     std::vector<ReceiverFace> faces_;

@@ -65,19 +65,20 @@ struct RefinedBeams::Part {
     std::uint32_t place;  // of place_of_part
 };
 
-RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams)
+RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams,
+                           const Progress& progress)
     : space_(space),
       source_(source),
       beams_(&beams),
       division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())),
       kept_(std::make_unique<std::atomic<std::size_t>>(0)),
       recent_(std::make_unique<RecentDivisions>()) {
-    find_sides();
+    find_sides(progress);
     const Vec3 all = beams.flux_arriving();
     mean_light_ = (all.x + all.y + all.z) / (space.size * space.size);
 }
 
-void RefinedBeams::find_sides() {
+void RefinedBeams::find_sides(const Progress& progress) {
     struct Side {
         Id beam, a, b;
     };
@@ -95,9 +96,13 @@ void RefinedBeams::find_sides() {
         }
     }
     side_middle_.resize(sides.size());
+    LoopProgress done(progress, static_cast<double>(sides.size()));
     parallel_for(sides.size(), 64, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i)
+        for (std::size_t i = first; i < last; ++i) {
+            done.stop_if_cancelled();
             side_middle_[i] = middle(sides[i].beam, beams_->ends[sides[i].a], beams_->ends[sides[i].b]);
+        }
+        done.add(static_cast<double>(last - first));
     });
 }
 

@@ -53,8 +53,10 @@ std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 
 class RefinedBeams {
   public:
     RefinedBeams() = default;
-    /// `beams` must live longer, and what `space` points to.
-    RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams);
+    /// `beams` must live longer, and what `space` points to. Throws Interrupted soon after `progress` says
+    /// so.
+    RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams,
+                 const Progress& progress = {});
 
     /// The exact rays at the middles of a beam's sides, across from its ends.
     const std::array<BeamEnd, 3>& middles(Id beam) const { return division(beam).middle; }
@@ -81,7 +83,7 @@ class RefinedBeams {
   private:
     struct Visit;
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
-    void find_sides();
+    void find_sides(const Progress& progress);
     void divide(Id beam, const BeamEnds& end, BeamDivision& into) const;
     struct Part;
     const BeamDivision& division_for_now(Id beam, const Part& part,

@@ -24,8 +24,9 @@ namespace trilens {
 namespace {
 
 constexpr int kMostPasses = 24;
-/// Of the whole bake: while patches exchange their light.
-constexpr double kSolvingShare = 0.3;
+/// Of the whole bake: until beams of lights with caustics are made, and until patches have exchanged their
+/// light.
+constexpr double kLightsShare = 0.1, kSolvingShare = 0.3;
 constexpr double kBytesPerFactor = sizeof(Id) + sizeof(double);
 /// Making form factors reciprocal holds both estimates, and what they are sorted in.
 constexpr double kMatrixCopies = 4;
@@ -62,7 +63,8 @@ class Baker {
     Bake bake() {
         check();
         divide();
-        const DirectLight direct(world_);
+        const DirectLight direct(world_, part(0, kLightsShare));
+        progress_.begin_stage("");
         const std::shared_ptr<const TriangleScene> triangles = mesh_.triangles();
         const FormFactors factors(triangles, params_of(request_.form_factors));
         const PatchPass patches = solve(direct, *triangles, factors);
@@ -103,12 +105,7 @@ class Baker {
         return {method, request_.hemicube_resolution, 1, request_.rays, length_of(kShadowOffset)};
     }
     /// Of the whole bake's progress the part of this length from there on.
-    Progress part(double from, double length) const {
-        Progress progress = progress_;
-        if (progress_.report)
-            progress.report = [this, from, length](double done) { progress_(from + length * done); };
-        return progress;
-    }
+    Progress part(double from, double length) const { return progress_.part(from, length); }
 
     const World& world_;
     const BakeRequest& request_;
@@ -199,10 +196,11 @@ PatchPass Baker::solve(const DirectLight& direct, const TriangleScene& triangles
                 side, [&](std::size_t i) { return factors.row(static_cast<Id>(i)); },
                 [](const FormFactorRow& made) { return made; });
         };
-        patches.solution = shoot(problem, row, params, part(0, kSolvingShare));
+        patches.solution = shoot(problem, row, params, part(kLightsShare, kSolvingShare - kLightsShare));
     } else {
         check_matrix_memory(factors.side_count());
-        const FormFactorMatrix matrix = make_matrix(factors, part(0, kSolvingShare));
+        const FormFactorMatrix matrix =
+            make_matrix(factors, part(kLightsShare, kSolvingShare - kLightsShare));
         patches.solution =
             gather(problem, made_reciprocal(matrix, patches.area), params, part(kSolvingShare, 0));
     }

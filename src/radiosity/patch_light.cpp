@@ -49,8 +49,9 @@ PatchSide side_of_patch(const World& world, const DirectLight& direct, const Rad
 
 }  // namespace
 
-DirectLight::DirectLight(const World& world) : world_(world), white_(world.shading) {
-    prepare_shadows(world);
+DirectLight::DirectLight(const World& world, const Progress& progress)
+    : world_(world), white_(world.shading), cancel_(progress.cancel) {
+    prepare_shadows(world, progress);
     for (Material& material : white_.materials) {
         material = Material{};
         material.brdf = Brdf::kLambert;
@@ -64,7 +65,10 @@ std::vector<Vec3> DirectLight::at(std::span<const ShadedPoint> points) const {
     std::vector<SeenPoint> seen;
     std::vector<SeenAlong> along;
     for (const ShadedPoint& point : points) seen.emplace_back(world_.objects, point);
-    for (const SeenPoint& one : seen) along.push_back({&one.hit, &one.ray});
+    for (const SeenPoint& one : seen) {
+        along.push_back({&one.hit, &one.ray});
+        along.back().cancel = cancel_;
+    }
     std::vector<Vec3> light(points.size());
     shade_rays(white_, along, light);
     return light;

@@ -19,8 +19,9 @@ struct ShadedPoint {
 /// matt.
 class DirectLight {
   public:
-    /// The world must live longer.
-    explicit DirectLight(const World& world);
+    /// The world must live longer. Throws Interrupted soon after `progress`, of the making of lights, says
+    /// so, and what asks afterwards does, too.
+    explicit DirectLight(const World& world, const Progress& progress = {});
 
     /// Irradiance over pi at the points, light over optics among it where lights have caustics. Thread-safe.
     std::vector<Vec3> at(std::span<const ShadedPoint> points) const;
@@ -28,6 +29,7 @@ class DirectLight {
   private:
     const World& world_;
     ShadeScene white_;
+    const std::atomic<bool>* cancel_;
 };
 
 /// Means over one side of a patch.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 
 #include "base/math/vec.h"
 #include "base/util/ids.h"
@@ -17,6 +18,7 @@ struct Receiver {
     std::array<Vec3, 2> sides{};
     Id triangle = kNone;  // it lies on, of those that the light knows; kNone: on none of them
     bool exact = false;   // as traced pictures want it, however long it takes
+    const std::atomic<bool>* cancel = nullptr;  // set: who asked wants it no more, Interrupted is thrown
 };
 
 }  // namespace trilens

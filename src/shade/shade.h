@@ -110,6 +110,8 @@ struct SeenAlong {
     const std::array<Vec3, 2>* footprint = nullptr;
     bool without_caustics = false;  // light that comes over optics is not asked for
     bool exact_caustics = false;    // it comes by exact rays
+    // Receiver's, of what comes over optics.
+    const std::atomic<bool>* cancel = nullptr;
 };
 
 /// The light at a point of a surface, as it arrives.

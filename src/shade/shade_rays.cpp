@@ -280,6 +280,7 @@ void Shaded::add_caustic(std::size_t light, ShadeBatch::Bits wanted) {
         if (seen[i]->footprint) receiver.sides = *seen[i]->footprint;
         receiver.triangle = seen[i]->hit->triangle;
         receiver.exact = seen[i]->exact_caustics;
+        receiver.cancel = seen[i]->cancel;
         caustic[i] += std::numbers::inv_pi * scene.caustic(light, receiver);
     });
 }

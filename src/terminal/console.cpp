@@ -35,6 +35,7 @@ void write_all(int descriptor, const char* text, std::size_t size) {
 
 [[noreturn]] void end_at_once(int signal) {
     constexpr char kSaid[] = "trilens: error: interrupted\n";
+    remove_unfinished_files();
     const std::string& answer = signal == SIGTERM ? g_after_terminate : g_after_interrupt;
     write_all(STDOUT_FILENO, answer.data(), answer.size());
     write_all(STDERR_FILENO, kSaid, sizeof kSaid - 1);
@@ -127,13 +128,23 @@ void Console::note_stage(const std::string& what, const Stopwatch& watch) {
 Progress Console::progress(const std::string& job) {
     stop_at_once(false);
     last_done_ = -1;
-    time_left_ = {};
+    told_done_ = 0;
+    begin_stage("", 1);
     started_ = last_time_ = std::chrono::steady_clock::now();
     Progress progress;
     progress.cancel = &stop_requested();
     if (options_.progress != ProgressStyle::kSilent)
         progress.report = [this, job](double done) { draw(job, done); };
+    progress.stage = [this](const std::string& what, double until) { begin_stage(what, until); };
     return progress;
+}
+
+/// Each goes at a speed of its own, of which what was before tells nothing.
+void Console::begin_stage(const std::string& what, double until) {
+    const std::lock_guard lock(mutex_);
+    stage_ = what;
+    stage_from_ = told_done_, stage_until_ = until;
+    time_left_ = {};
 }
 
 void Console::draw(const std::string& job, double done) {
@@ -141,7 +152,10 @@ void Console::draw(const std::string& job, double done) {
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - started_).count();
     const double silent = std::chrono::duration<double>(now - last_time_).count();
-    const std::optional<double> left = time_left_.at(done, elapsed);
+    told_done_ = done;
+    const double length = stage_until_ - stage_from_,
+                 of_stage = length > 0 ? (done - stage_from_) / length : 1;
+    const std::optional<double> left = time_left_.at(std::clamp(of_stage, 0.0, 1.0), elapsed);
     const double step = options_.progress == ProgressStyle::kBar ? 0.01 : 0.1;
 
     // Short jobs finish without a word: a plain or JSON line is worth it after two seconds.
@@ -150,17 +164,22 @@ void Console::draw(const std::string& job, double done) {
     last_done_ = done;
     last_time_ = now;
     const int percent = static_cast<int>(100 * done);
-    const std::string seconds = left ? fmt::format(", {:.0f} s left", *left) : "";
+    const std::string seconds =
+                          left ? fmt::format(", {:.0f} s left{}", *left, stage_.empty() ? "" : " of that")
+                               : "",
+                      text = stage_.empty() ? job : job + ": " + stage_;
     if (options_.progress == ProgressStyle::kJson) {
-        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",\"done\":%.3f,\"eta_s\":%s}\n", elapsed, job.c_str(),
-                     done, left ? fmt::format("{:.1f}", *left).c_str() : "null");
+        const std::string stage = stage_.empty() ? "" : fmt::format("\"stage\":\"{}\",", stage_);
+        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",%s\"done\":%.3f,\"eta_s\":%s}\n", elapsed,
+                     job.c_str(), stage.c_str(), done,
+                     left && stage_.empty() ? fmt::format("{:.1f}", *left).c_str() : "null");
     } else if (options_.progress == ProgressStyle::kPlain) {
-        std::fprintf(stderr, "trilens: %s %d %%%s\n", job.c_str(), percent, seconds.c_str());
+        std::fprintf(stderr, "trilens: %s %d %%%s\n", text.c_str(), percent, seconds.c_str());
     } else if (done >= 1) {
         clear_bar();
     } else {
         const int filled = static_cast<int>(30 * done);
-        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%%s", job.c_str(),
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%%s", text.c_str(),
                      std::string(static_cast<std::size_t>(filled), '#').c_str(),
                      std::string(static_cast<std::size_t>(30 - filled), ' ').c_str(), percent,
                      seconds.c_str());

@@ -82,14 +82,17 @@ class Console {
 
   private:
     void draw(const std::string& job, double done);
+    void begin_stage(const std::string& what, double until);
     void clear_bar();
     void write_line(const char* label, const char* colour, const std::string& message);
 
     ConsoleOptions options_;
     bool colour_ = false;
     bool bar_shown_ = false;
-    double last_done_ = -1;
-    TimeLeft time_left_;
+    double last_done_ = -1, told_done_ = 0;  // that was drawn, and at all
+    TimeLeft time_left_;                     // of the stage
+    std::string stage_;
+    double stage_from_ = 0, stage_until_ = 1;
     std::chrono::steady_clock::time_point last_time_, started_;
     std::vector<std::string> warnings_;
     FileRoles files_;

@@ -66,6 +66,19 @@ TEST_CASE("files: a new file takes its name when it is whole, else leaves the ol
     CHECK_THROWS_AS(NewFile(folder + "/none/whole.bin"), OutputError);
 }
 
+TEST_CASE("files: of a program that ends at once nothing unfinished is left", "[base]") {
+    const std::string folder = trilens_test::scratch_dir("base_unfinished");
+    replace_text_file(folder + "/old", "old");
+    NewFile done(folder + "/done"), begun(folder + "/begun"), other(folder + "/other");
+    begun.write(0, std::vector<unsigned char>(5));
+    done.commit();
+    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 4);
+    remove_unfinished_files();
+    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 2);
+    CHECK(read_whole_file(folder + "/old") == "old");
+    CHECK(fs::exists(folder + "/done"));
+}
+
 TEST_CASE("files: a new file that cannot have its name says so and leaves nothing", "[base]") {
     const std::string folder = trilens_test::scratch_dir("base_full");
     // A folder that takes the name meanwhile.

@@ -102,7 +102,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
      {"src/base/math/double_lanes-inl.h", "src/projector/kernel", "src/measure/field/patch_batch.cpp",
       "src/measure/common/weighted_sums.cpp", "src/measure/field/pyramid_query.cpp",
       "src/specular/simd_bounds.cpp", "src/specular/sphere_images.cpp", "src/shade/shade_batch.cpp",
-      "src/shade/light_batch.cpp", "src/intersect/local_segments.cpp"}},
+      "src/shade/light_batch.cpp", "src/intersect/local_segments.cpp", "src/caustics/cut_pieces.cpp"}},
     {"oneapi/", {}},
     {"opensubdiv/", {"surfaces/"}},
     {"tiny_obj_loader.h", {}},

@@ -28,6 +28,7 @@ const std::map<std::string, std::string> kElsewhere{
     {"kind_name", "of any primitive"},
     {"name_of", "of an enumerator"},
     {"normalize_or_zero", "of any vector"},
+    {"remove_unfinished_files", "of no data"},
     {"unit_across", "of any vector; it is none of one without length"},
     {"triple", "of any vectors"},
     {"names_of", "of an enumeration"},

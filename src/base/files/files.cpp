@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -115,6 +117,52 @@ std::string reason(int error_number) {
 
 }  // namespace
 
+namespace {
+
+/// The names of files that are being written, where a signal's handler can read them.
+class UnfinishedFiles {
+  public:
+    static constexpr std::size_t kMost = 64;
+
+    /// Its place; kMost: there is no room for it.
+    std::size_t add(const std::string& name) {
+        if (name.size() >= kLongest) return kMost;
+        for (std::size_t i = 0; i < kMost; ++i) {
+            State free = State::kFree;
+            if (!file_[i].state.compare_exchange_strong(free, State::kTaken)) continue;
+            std::copy_n(name.c_str(), name.size() + 1, file_[i].name.data());
+            file_[i].state = State::kNamed;
+            return i;
+        }
+        return kMost;
+    }
+    void forget(std::size_t place) {
+        if (place < kMost) file_[place].state = State::kFree;
+    }
+    void remove() noexcept {
+        for (File& file : file_)
+            if (file.state == State::kNamed) unlink(file.name.data());
+    }
+
+  private:
+    static constexpr std::size_t kLongest = 4096;
+    enum class State : unsigned char { kFree, kTaken, kNamed };
+    static_assert(std::atomic<State>::is_always_lock_free, "a signal handler reads it");
+    struct File {
+        std::atomic<State> state = State::kFree;
+        std::array<char, kLongest> name{};
+    };
+    std::array<File, kMost> file_;
+};
+
+constinit UnfinishedFiles unfinished_files;
+
+}  // namespace
+
+void remove_unfinished_files() noexcept {
+    unfinished_files.remove();
+}
+
 NewFile::NewFile(const std::string& file) : target_(output_target(file)) {
     static std::atomic<unsigned> counter{0};
     constexpr int kMostTries = 1000;
@@ -127,6 +175,7 @@ NewFile::NewFile(const std::string& file) : target_(output_target(file)) {
         failed = descriptor_ < 0 ? errno : 0;
     }
     if (failed) fail(reason(failed));
+    unfinished_ = unfinished_files.add(name_);
 }
 
 NewFile::~NewFile() {
@@ -134,6 +183,7 @@ NewFile::~NewFile() {
     if (name_.empty()) return;
     std::error_code nothing_more_to_do;
     std::filesystem::remove(name_, nothing_more_to_do);
+    unfinished_files.forget(unfinished_);
 }
 
 void NewFile::fail(const std::string& why) const {
@@ -158,6 +208,7 @@ void NewFile::commit() {
     std::error_code error;
     std::filesystem::rename(name_, target_, error);
     if (error) fail(error.message());
+    unfinished_files.forget(unfinished_);
     name_.clear();
 }
 

@@ -62,8 +62,13 @@ class NewFile {
   private:
     [[noreturn]] void fail(const std::string& why) const;
 
-    std::string target_, name_;  // name_: empty once it has taken its place
-    int descriptor_ = -1;        // -1: closed
+    std::string target_, name_;   // name_: empty once it has taken its place
+    int descriptor_ = -1;         // -1: closed
+    std::size_t unfinished_ = 0;  // its place among those that remove_unfinished_files() removes
 };
+
+/// Removes the files of this program that are being written, as far as they are known (some dozens): for one
+/// that ends at once. It may be called in a signal's handler.
+void remove_unfinished_files() noexcept;
 
 }  // namespace trilens

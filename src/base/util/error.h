@@ -77,11 +77,30 @@ struct Progress {
     // Share done, 0..1; never called from two threads at once, nor once cancelled.
     std::function<void(double done)> report;
     const std::atomic<bool>* cancel = nullptr;  // set by a signal handler
+    // Told what is done from now on, at a speed of its own, until that share is done; the empty text: the job
+    // itself, until its end.
+    std::function<void(const std::string& what, double until)> stage = {};
 
     void operator()(double done) const {
         if (report && !cancelled()) report(done);
     }
     bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
+    void stop_if_cancelled() const {
+        if (cancelled()) throw Interrupted();
+    }
+    void begin_stage(const std::string& what, double until = 1) const {
+        if (stage && !cancelled()) stage(what, until);
+    }
+    /// Of this job's progress the part of that length from there on: what it is told is a share of the part.
+    Progress part(double from, double length) const {
+        Progress one = *this;
+        if (report) one.report = [whole = report, from, length](double done) { whole(from + length * done); };
+        if (stage)
+            one.stage = [whole = stage, from, length](const std::string& what, double until) {
+                whole(what, from + length * until);
+            };
+        return one;
+    }
 };
 
 /// Where rooms put what the user would want to know but what is no error.

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <utility>
 
+#include "base/util/error.h"
+
 namespace trilens {
 
 /// Limits every later parallel_for to `threads` threads; 0 means all that the machine has.
@@ -22,6 +24,27 @@ int thread_count();
 /// An exception thrown by body is rethrown here.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body);
+
+/// How much of a loop is done on all threads: reported by one call at a time.
+class LoopProgress {
+  public:
+    /// `progress` must live longer.
+    LoopProgress(const Progress& progress, double count) : progress_(progress), count_(count) {}
+
+    /// Throws Interrupted once the progress is cancelled.
+    void stop_if_cancelled() const { progress_.stop_if_cancelled(); }
+    void add(double done) {
+        if (!progress_.report) return;
+        const std::scoped_lock lock(mutex_);
+        done_ += done;
+        progress_(done_ / count_);
+    }
+
+  private:
+    const Progress& progress_;
+    double count_, done_ = 0;
+    std::mutex mutex_;
+};
 
 /// Calls every one of them, in any order and on any threads; returns when all have ended. An exception thrown
 /// by one is rethrown here.

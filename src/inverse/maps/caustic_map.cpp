@@ -10,6 +10,9 @@
 namespace trilens {
 namespace {
 
+/// Of the job: while beams are made, and gathered where the object is flat.
+constexpr double kBeamsShare = 0.3, kGatheringShare = 0.3;
+
 /// The light of a pixel, and its area; none where the object is not.
 struct CausticPixel {
     bool covered = false;
@@ -27,16 +30,22 @@ TriangleScene triangles_of(const FlatRectangle& rectangle) {
     return scene;
 }
 
+struct PixelParams {
+    double lift = 0;  // of shadow rays, off the surface
+    const std::atomic<bool>* cancel = nullptr;
+};
+
 CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, const Target& target,
-                      const Vec2& pixel, const CausticMapRequest& request, double lift) {
+                      const Vec2& pixel, const CausticMapRequest& request, const PixelParams& params) {
     const std::optional<TargetPlace> place = target.place(pixel);
     if (!place) return {};
     // Rows go downward, so the front's normal is dy x dx.
     Vec3 normal = normalize_or_zero(cross(place->dy, place->dx));
     if (request.back) normal = -normal;
-    Receiver receiver{place->at, normal, normal, place->at + lift * normal, {place->dx, place->dy}};
+    Receiver receiver{place->at, normal, normal, place->at + params.lift * normal, {place->dx, place->dy}};
     if (target.rectangle()) receiver.triangle = 0;
     receiver.exact = request.exact;
+    receiver.cancel = params.cancel;
     return {true, irradiance(lights, receiver), length(cross(place->dx, place->dy))};
 }
 
@@ -52,14 +61,19 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
     const PathWorld optics = optics_for_lights(world);
     BeamGridParams params;
     params.tolerance = request.tolerance;
-    Progress making = progress;
-    if (progress.report) making.report = [&](double done) { progress.report(0.5 * done); };
     const std::vector<std::unique_ptr<BeamLight>> lights =
-        make_beam_lights(world, optics, request.light, params, making);
+        make_beam_lights(world, optics, request.light, params, progress.part(0, kBeamsShare));
     if (target.rectangle()) {
         const auto faces = std::make_shared<ReceiverFaces>(triangles_of(*target.rectangle()));
         for (const auto& light : lights) light->receive_on(faces);
+        std::vector<const BeamLight*> all;
+        for (const auto& light : lights) all.push_back(light.get());
+        const ReceiverSide side{0, request.back};
+        if (!request.exact) gather_light(all, {&side, 1}, progress.part(kBeamsShare, kGatheringShare));
     }
+    progress.begin_stage("");
+    const double prepared = kBeamsShare + kGatheringShare;
+    const Progress drawing = progress.part(prepared, 1 - prepared);
 
     CausticMap map;
     map.width = request.target.width, map.height = request.target.height;
@@ -67,17 +81,18 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
     map.irradiance.resize(width * height);
     map.covered.resize(width * height);
     std::vector<Vec3> row_flux(height, Vec3(0));
+    LoopProgress drawn(drawing, static_cast<double>(height));
     parallel_for(height, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t y = from; y < to; ++y) {
-            if (progress.cancelled()) throw Interrupted();
             for (std::size_t x = 0; x < width; ++x) {
                 const CausticPixel pixel =
                     pixel_at(lights, target, Vec2(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5),
-                             request, kShadowOffset * world.shading.size);
+                             request, {kShadowOffset * world.shading.size, progress.cancel});
                 map.irradiance[y * width + x] = pixel.irradiance;
                 map.covered[y * width + x] = pixel.covered;
                 row_flux[y] += pixel.area * pixel.irradiance;
             }
+            drawn.add(1);
         }
     });
     for (const Vec3& flux : row_flux) map.flux_received += flux;

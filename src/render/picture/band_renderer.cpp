@@ -23,6 +23,8 @@ constexpr std::size_t kMostKeys = 1u << 20;  // the same where samples have no r
 constexpr std::size_t kBandsAtOnce = 3;      // on their way: seen, shaded, taken
 constexpr std::size_t kPixelsPerTask = 256, kSamplesPerTask = 1024;
 constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
+// Of a drawing, until its pixels are shaded; then the last of them are taken.
+constexpr double kShadingShare = 0.999;
 
 /// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
 bool lacks_ray(const World& world, const SampleViews& views, const SampleView& view) {
@@ -53,7 +55,7 @@ class FilteredSamples {
   public:
     FilteredSamples(const PixelSource& source, const SampleGrid& window)
         : filter_(source.filter), grid_(window) {
-        const auto& [world, viewer, filter, progress] = source;
+        const auto& [world, viewer, filter, progress, shaded] = source;
         const Film& film = world.scene.film;
         grid_.x0 = std::max(0, window.x0 - filter.reach);
         grid_.y0 = std::max(0, window.y0 - filter.reach);
@@ -62,12 +64,15 @@ class FilteredSamples {
         SampleViews views;
         viewer.view(grid_, views);
         colours_.resize(grid_.size());
-        const RayDifferentials differentials(world, viewer, grid_);
+        const double pixels_per_sample =
+            static_cast<double>(window.pixels()) / static_cast<double>(grid_.size());
+        const RayDifferentials differentials(world, viewer, grid_, progress.cancel);
         parallel_for(colours_.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
             if (source.progress.cancelled()) throw Interrupted();
             sample_colours(source.world, views, from, std::span(colours_).subspan(from, to - from),
                            grid_.side == 1 || gathers_light(source.world) ? &differentials : nullptr);
             for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
+            source.shaded.add(pixels_per_sample * static_cast<double>(to - from));
         });
     }
 
@@ -163,7 +168,7 @@ struct BandSource {
 };
 
 void view_band(const BandSource& source, Band& band) {
-    const auto& [world, viewer, filter, progress] = source.pixels;
+    const auto& [world, viewer, filter, progress, shaded] = source.pixels;
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
     band.fragments.reset();
@@ -185,7 +190,7 @@ void view_band(const BandSource& source, Band& band) {
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
 void find_colours(const BandSource& source, const Band& band, std::size_t first,
                   std::span<SampleColour> colours) {
-    const auto& [world, viewer, filter, progress] = source.pixels;
+    const auto& [world, viewer, filter, progress, shaded] = source.pixels;
     const SampleGrid& grid = band.grid;
     if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
@@ -198,13 +203,13 @@ void find_colours(const BandSource& source, const Band& band, std::size_t first,
     }
     const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
     if (per_pixel == 1) {
-        const RayDifferentials differentials(world, viewer, grid);
+        const RayDifferentials differentials(world, viewer, grid, progress.cancel);
         sample_colours(world, band.views, first, colours, &differentials);
         for (SampleColour& colour : colours) colour = filter.averaged(colour);
         return;
     }
     std::vector<SampleColour> samples(colours.size() * per_pixel);
-    const RayDifferentials differentials(world, viewer, grid);
+    const RayDifferentials differentials(world, viewer, grid, progress.cancel);
     sample_colours(world, band.views, first * per_pixel, samples,
                    gathers_light(world) ? &differentials : nullptr);
     for (std::size_t i = 0; i < colours.size(); ++i)
@@ -294,6 +299,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
             const std::size_t end = std::min(to, start + kPixelsPerTask);
             const std::span<SampleColour> here = std::span(colours).first(end - start);
             find_colours(source, band, start, here);
+            if (!band.filtered && !band.fragments) source.pixels.shaded.add(static_cast<double>(end - start));
             if (source.marks) paint_marks(source, band, start, here);
             canvas.put_colours(here, first + start);
             for (std::size_t p = start; p < end; ++p) {
@@ -335,8 +341,10 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
+    const Progress shading = progress.part(0, kShadingShare);
+    LoopProgress shaded(shading, static_cast<double>(width) * height);
     const BandSource source{
-        {world, viewer, filter, progress}, by_fragments, canvases[0].wants_coverage(), output.marks};
+        {world, viewer, filter, progress, shaded}, by_fragments, canvases[0].wants_coverage(), output.marks};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {
@@ -353,9 +361,9 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     stages.end = [&](std::size_t, std::size_t slot) {
         merge(band[slot].counts, counts);
         if (sink) sink->add(canvases[slot].image().channels, band[slot].grid.height());
-        progress(static_cast<double>(band[slot].grid.y1 - request.y0) / height);
     };
     run_pipeline(bands, slots, stages);
+    progress(1);
     if (output.statistics) *output.statistics = counts;
     return sink ? empty_image(world, request) : canvases[0].take();
 }

@@ -203,6 +203,7 @@ void FragmentContributions::shade_at_points(std::span<Vec3> light) {
         texels[k] = mean ? *mean : texels_at(shading_.world.shading, seen[k]);
         seen[k].texels = &texels[k];
         seen[k].footprint = waiting_[i].footprint();
+        seen[k].cancel = shading_.cancel;
     }
     shade_rays(shading_.world.shading, std::span(seen).first(points.size()),
                std::span(shown).first(points.size()), std::span(centre).first(points.size()));

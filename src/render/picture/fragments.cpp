@@ -98,11 +98,13 @@ FragmentColours::FragmentColours(const PixelSource& source, const SampleGrid& wi
       viewer_(source.viewer),
       filter_(source.filter),
       progress_(source.progress),
+      progress_shaded_(source.shaded),
       grid_(with_margin(window, source.world.scene.film, source.filter.reach)) {
     const OpenPixels open(viewer_, grid_);
     viewer_.view({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
     find_fragments(open);
     shaded_.resize(fragments_.size());
+    pixels_per_fragment_ = static_cast<double>(window.pixels()) / static_cast<double>(fragments_.size());
     shade_centres();
     shade_samples();
     count_rays_by_sample();
@@ -220,8 +222,9 @@ void FragmentColours::shade_centres() {
         }
         if (progress_.cancelled()) throw Interrupted();
         std::vector<ShadedFragment> shaded(shown.size());
-        shade_fragments({world_, viewer_, centres_, grid_.side}, shown, shaded);
+        shade_fragments({world_, viewer_, centres_, grid_.side, progress_.cancel}, shown, shaded);
         for (std::size_t k = 0; k < of.size(); ++k) shaded_[of[k]] = shaded[k];
+        progress_shaded_.add(pixels_per_fragment_ * static_cast<double>(of.size()));
     });
 }
 
@@ -257,8 +260,9 @@ void FragmentColours::shade_samples() {
                     {&views.samples[k], pixel_corner(now[k].pixel), members_of(fragments_[now[k].fragment])});
             if (progress_.cancelled()) throw Interrupted();
             std::vector<ShadedFragment> shaded(shown.size());
-            shade_fragments({world_, viewer_, views, grid_.side}, shown, shaded);
+            shade_fragments({world_, viewer_, views, grid_.side, progress_.cancel}, shown, shaded);
             for (std::size_t k = from; k < to; ++k) shaded_[now[k].fragment] = shaded[k - from];
+            progress_shaded_.add(pixels_per_fragment_ * static_cast<double>(to - from));
         });
     }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "render/engines/engine.h"
 #include "render/picture/channels.h"
 #include "render/picture/sample_colour.h"
@@ -33,7 +34,8 @@ struct FragmentShading {
     const World& world;
     const Viewer& viewer;
     const SampleViews& views;
-    int side = 1;  // samples along a pixel's edge
+    int side = 1;                               // samples along a pixel's edge
+    const std::atomic<bool>* cancel = nullptr;  // see Receiver
 };
 
 /// Colours of fragments, the means over their samples. Where a sample stands is told by its facet's map,
@@ -67,6 +69,7 @@ struct PixelSource {
     Viewer& viewer;
     const PixelFilter& filter;
     const Progress& progress;
+    LoopProgress& shaded;  // of the picture's pixels
 };
 
 /// The colours of all fragments in a window and the pixels around it that a filter reaches.
@@ -119,6 +122,8 @@ class FragmentColours {
     Viewer& viewer_;
     const PixelFilter& filter_;
     const Progress& progress_;
+    LoopProgress& progress_shaded_;
+    double pixels_per_fragment_ = 0;
     SampleGrid grid_;  // in lattice order
     SampleViews centres_;
     std::vector<std::size_t> first_;  // per pixel of the grid, and one more: in fragments_

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -203,6 +204,60 @@ void collect_strip(const std::vector<Channel>& channels, int first, int rows, Im
             image.channels[i].values);
 }
 
+/// Of the job, where lights have caustics that are not known yet: while their beams are made, and gathered on
+/// what is seen.
+constexpr double kBeamsShare = 0.2, kGatheringShare = 0.3;
+/// Rows of a picture that say which faces are seen, at most, and how far apart they are, at least; what
+/// others show beside is gathered while they are drawn.
+constexpr int kRowsLookedAt = 16, kRowsApart = 12;
+
+/// The sides of objects' faces that rows of the window show, each once.
+std::vector<ReceiverSide> seen_faces(const ReceiverFaces& faces, Viewer& viewer, const LayerRequest& window,
+                                     const Progress& progress) {
+    std::set<ReceiverSide> seen;
+    const auto add = [&](const Hit& hit, const Ray& ray) {
+        if (!hit.seen()) return;
+        const ReceiverSide side = faces.side_of(hit.triangle, -ray.direction);
+        if (side.face != kNone) seen.insert(side);
+    };
+    SampleViews views;
+    const int height = window.y1 - window.y0, rows = std::min(1 + height / kRowsApart, kRowsLookedAt);
+    for (int i = 0; i < rows; ++i) {
+        progress.stop_if_cancelled();
+        const int y = window.y0 + (2 * i + 1) * height / (2 * rows);
+        viewer.view({window.x0, y, window.x1, y + 1, 1}, views);
+        for (const SampleView& view : views.samples)
+            if (view.optic == kNone) add(view.hit, view.ray);
+        for (const PathEnd& end : views.ends) add(end.hit, end.ray);
+    }
+    return {seen.begin(), seen.end()};
+}
+
+/// Makes the beams of lights with caustics; returns the rest of the progress.
+Progress prepare_caustics(const World& world, const Progress& progress) {
+    if (!has_caustics(world) || known_caustic_lights(world)) return progress;
+    caustic_lights(world, progress.part(0, kBeamsShare));
+    progress.begin_stage("");
+    return progress.part(kBeamsShare, 1 - kBeamsShare);
+}
+
+/// Gathers their light on what is seen, where pictures do not ask for exact rays; returns the rest of the
+/// progress.
+Progress gather_seen(const World& world, Viewer& viewer, const LayerRequest& window,
+                     const Progress& progress) {
+    if (!has_caustics(world) || !viewer.has_facets()) return progress;
+    const CausticLights& lights = caustic_lights(world);
+    std::vector<ReceiverSide> faces = seen_faces(*lights.faces, viewer, window, progress);
+    const std::vector<const BeamLight*> all = lights.all();
+    std::erase_if(faces, [&](const ReceiverSide& face) {
+        return std::ranges::all_of(all, [&](const BeamLight* light) { return light->is_gathered(face); });
+    });
+    if (faces.empty()) return progress;
+    gather_light(all, faces, progress.part(0, kGatheringShare));
+    progress.begin_stage("");
+    return progress.part(kGatheringShare, 1 - kGatheringShare);
+}
+
 }  // namespace
 
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
@@ -213,7 +268,9 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;
+    const Progress after_beams = prepare_caustics(world, progress);
     const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, warn);
+    const Progress drawing_progress = gather_seen(world, *viewer, layers, after_beams);
     const PlacedMarks marks = place_marks(world, request.frame, {nullptr, progress.cancel});
     const MarkPainter painter(world, marks, layers.shown);
     picture.prepare_seconds = preparing.seconds();
@@ -240,7 +297,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     const bool in_strips = sink || request.watch;
     const Stopwatch drawing;
     picture.image = draw_layers(
-        world, *viewer, layers, progress,
+        world, *viewer, layers, drawing_progress,
         {&picture.statistics, in_strips ? &described : nullptr, marks.marks.empty() ? nullptr : &painter});
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();

@@ -134,6 +134,7 @@ void Gathering::shade(SampleColour& colour) {
         along.push_back({&one.hit, &one.ray});
         if (one.is_spread) along.back().differential = &one.differential;
         along.back().exact_caustics = !gather_.is_filtered;
+        along.back().cancel = gather_.cancel;
     }
     std::vector<Vec3> light(along.size());
     shade_rays(world_.shading, along, light);
@@ -208,6 +209,7 @@ bool shade_rough(const FragmentShading& shading, const ShownFragment& fragment, 
             differential.origin[k] *= share, differential.direction[k] *= share;
         return differential;
     };
+    gather.cancel = shading.cancel;
     const std::optional<SampleColour> gathered = rough_colour(shading.world, shading.views, view, gather);
     if (gathered) colour = *gathered;
     return gathered.has_value();

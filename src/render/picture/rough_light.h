@@ -24,6 +24,7 @@ struct RoughGather {
     // Of the part of the film that the sample stands for: what it makes of the ray of one of the ends that
     // smooth optics would show, per unit of its direction as it is. Unset: nothing.
     std::function<std::optional<RayDifferential>(const PathEnd&)> differential = {};
+    const std::atomic<bool>* cancel = nullptr;  // see Receiver
 };
 
 /// Whether the sample shows a rough optic, or one in which smooth optics would show it a rough one.

@@ -67,6 +67,7 @@ std::optional<SampleColour> Contributions::rough(std::size_t index) const {
     const bool traced = differentials_ && differentials_->are_traced();
     const int side = differentials_ ? differentials_->side() : 1;
     RoughGather gather{.ways = rough_ways(world_.scene.render, traced, side), .is_filtered = !traced};
+    if (differentials_) gather.cancel = differentials_->cancel();
     if (differentials_) gather.shift = rough_shift(differentials_->place(first_ + index), side);
     if (differentials_ && side == 1)
         gather.differential = [&](const PathEnd& end) {
@@ -87,7 +88,10 @@ void Contributions::add_sample(std::size_t index) {
         seen_[count_] = contribution.seen;
         const Hit& hit = *contribution.seen.hit;
         const bool textured = has_texture(world_.shading, hit), lit = world_.shading.caustic && hit.seen();
-        if (differentials_ && lit) seen_[count_].exact_caustics = differentials_->are_traced();
+        if (differentials_ && lit) {
+            seen_[count_].exact_caustics = differentials_->are_traced();
+            seen_[count_].cancel = differentials_->cancel();
+        }
         if (differentials_ && ((textured && differentials_->side() == 1) || lit))
             if (const auto differential = differentials_->of(views_, first_ + index, contribution)) {
                 differential_[count_] = *differential;

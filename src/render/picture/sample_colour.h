@@ -98,8 +98,10 @@ FacetMap facet_map(const Viewer& viewer, const SampleView& view, const PathEnd* 
 /// The differentials of the samples of one grid of views.
 class RayDifferentials {
   public:
-    RayDifferentials(const World& world, const Viewer& viewer, const SampleGrid& grid)
-        : world_(world), viewer_(viewer), grid_(grid) {}
+    /// `cancel`: set once nobody wants the colours any more; see Receiver.
+    RayDifferentials(const World& world, const Viewer& viewer, const SampleGrid& grid,
+                     const std::atomic<bool>* cancel = nullptr)
+        : world_(world), viewer_(viewer), grid_(grid), cancel_(cancel) {}
 
     /// Of a contribution's ray, per pixel; none where rays beside it have another history or none.
     std::optional<RayDifferential> of(const SampleViews& views, std::size_t sample,
@@ -111,6 +113,7 @@ class RayDifferentials {
     bool are_traced() const;
     /// Where a sample stands on the film.
     Vec2 place(std::size_t sample) const { return grid_.position(sample); }
+    const std::atomic<bool>* cancel() const { return cancel_; }
 
   private:
     std::optional<Ray> camera_ray(const SampleView& view, const Vec2& place) const;
@@ -120,6 +123,7 @@ class RayDifferentials {
     const World& world_;
     const Viewer& viewer_;
     SampleGrid grid_;
+    const std::atomic<bool>* cancel_;
 };
 
 }  // namespace trilens

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <mutex>
 #include <numeric>
 
 #include "base/math/box.h"
@@ -25,27 +24,6 @@ void order_in_space(std::span<const Vec3> points, std::span<std::size_t> some, s
                       [&] { order_in_space(points, some.subspan(half), most); }});
 }
 
-/// Reports how many points are done, one call at a time, and stops where that is asked for.
-class PointProgress {
-  public:
-    PointProgress(const Progress& progress, std::size_t count) : progress_(progress), count_(count) {}
-
-    void check() const {
-        if (progress_.cancelled()) throw Interrupted();
-    }
-    void add(std::size_t done) {
-        if (!progress_.report) return;
-        const std::scoped_lock lock(mutex_);
-        done_ += done;
-        progress_(static_cast<double>(done_) / static_cast<double>(count_));
-    }
-
-  private:
-    const Progress& progress_;
-    std::size_t count_, done_ = 0;
-    std::mutex mutex_;
-};
-
 }  // namespace
 
 std::vector<PointProjection> project_each(const PointProjector& projector,
@@ -58,13 +36,13 @@ std::vector<PointProjection> project_each(const PointProjector& projector,
     std::vector<Vec3> places;
     for (const ProjectedPoint& point : points) places.push_back(point.place);
     order_in_space(places, order, piece);
-    PointProgress done(progress, points.size());
+    LoopProgress done(progress, static_cast<double>(points.size()));
     parallel_for((points.size() + piece - 1) / piece, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from * piece; i < std::min(to * piece, points.size()); i += piece) {
-            done.check();
+            done.stop_if_cancelled();
             const auto some = std::span(order).subspan(i, std::min(piece, points.size() - i));
             projector.project(points, some, result);
-            done.add(some.size());
+            done.add(static_cast<double>(some.size()));
         }
     });
     return result;

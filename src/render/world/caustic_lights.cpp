@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/math/box.h"
 #include "base/util/error.h"
@@ -134,6 +135,14 @@ std::vector<BeamSource> beam_sources(const Light& light, const Background& backg
     return std::visit([&](const auto& kind) { return sources_of(light, background, kind); }, light.kind);
 }
 
+namespace {
+
+std::string count_text(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
 bool has_caustics(const World& world) {
     return std::any_of(world.scene.lights.begin(), world.scene.lights.end(), has_followed_light);
 }
@@ -151,6 +160,8 @@ std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, con
     if (sources.empty())
         throw UsageError("light " + std::to_string(light) + " is " + kind_name(world.scene.lights[light]) +
                          ", which has no caustics");
+    progress.begin_stage("beams of light " + std::to_string(light) +
+                         (sources.size() > 1 ? ", " + count_text(sources.size(), "sample") : ""));
     std::vector<std::vector<Vec3>> outlines;
     std::vector<Id> bodies;
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
@@ -174,12 +185,10 @@ std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, con
             const Media around = enclosing_bodies(optics, bodies, source.position).media;
             space.around = [around](const Ray&) { return around; };
         }
-        Progress part = progress;
-        if (progress.report)
-            part.report = [&](double done) {
-                progress((static_cast<double>(lights.size()) + done) / static_cast<double>(sources.size()));
-            };
-        lights.push_back(std::make_unique<BeamLight>(space, source, params, outlines, part));
+        const double share = 1.0 / static_cast<double>(sources.size());
+        lights.push_back(
+            std::make_unique<BeamLight>(space, source, params, outlines,
+                                        progress.part(static_cast<double>(lights.size()) * share, share)));
     }
     return lights;
 }
@@ -190,17 +199,57 @@ Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Rec
     return sum;
 }
 
-std::unique_ptr<CausticLights> make_caustic_lights(const World& world) {
+std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Progress& progress) {
     auto lights = std::make_unique<CausticLights>();
     lights->optics = optics_for_lights(world);
-    const auto faces = std::make_shared<ReceiverFaces>(world.objects);
-    for (std::size_t l = 0; l < world.scene.lights.size(); ++l)
-        lights->by_light.push_back(has_followed_light(world.scene.lights[l])
-                                       ? make_beam_lights(world, lights->optics, l)
-                                       : std::vector<std::unique_ptr<BeamLight>>());
-    for (const auto& of_light : lights->by_light)
-        for (const auto& light : of_light) light->receive_on(faces);
+    lights->faces = std::make_shared<ReceiverFaces>(world.objects);
+    const std::vector<Light>& all = world.scene.lights;
+    std::vector<std::size_t> samples;  // by light, of those that are followed
+    for (const Light& light : all)
+        samples.push_back(has_followed_light(light) ? beam_sources(light, world.scene.background).size() : 0);
+    const auto count = std::accumulate(samples.begin(), samples.end(), 0.0);
+    double done = 0;
+    for (std::size_t l = 0; l < all.size(); ++l) {
+        auto& of_light = lights->by_light.emplace_back();
+        if (!has_followed_light(all[l])) continue;
+        const double share = static_cast<double>(samples[l]) / count;
+        of_light = make_beam_lights(world, lights->optics, l, {}, progress.part(done, share));
+        for (const auto& light : of_light) light->receive_on(lights->faces);
+        done += share;
+    }
     return lights;
+}
+
+std::vector<const BeamLight*> CausticLights::all() const {
+    std::vector<const BeamLight*> lights;
+    for (const auto& of_light : by_light)
+        for (const auto& light : of_light) lights.push_back(light.get());
+    return lights;
+}
+
+void gather_light(std::span<const BeamLight* const> lights, std::span<const ReceiverSide> faces,
+                  const Progress& progress) {
+    progress.begin_stage("light on " + count_text(faces.size(), "face") +
+                         (lights.size() > 1 ? " of " + count_text(lights.size(), "sample") : ""));
+    struct Task {
+        const BeamLight* light;
+        ReceiverSide on;
+        double beams;
+    };
+    std::vector<Task> tasks;
+    double all = 0;
+    for (const ReceiverSide& face : faces)
+        for (const BeamLight* light : lights) {
+            tasks.push_back({light, face, static_cast<double>(light->count_near(face))});
+            all += tasks.back().beams;
+        }
+    double done = 0;
+    for (const Task& task : tasks) {
+        const double share = all > 0 ? task.beams / all : 0;
+        task.light->gather(task.on, progress.part(done, share));
+        done += share;
+    }
+    progress(1);
 }
 
 void warn_of_lost_light(const World& world, const CausticLights& lights, const Warn& warn) {

@@ -208,22 +208,26 @@ Segments::Bits meets_anything(const World& world, const Segments& segments) {
     return hidden;
 }
 
-const CausticLights& caustic_lights(const World& world) {
+const CausticLights& caustic_lights(const World& world, const Progress& progress) {
     CausticGeometry& kept = *world.geometry->caustics;
     return kept.lights.get([&] {
-        std::unique_ptr<CausticLights> made = make_caustic_lights(world);
+        std::unique_ptr<CausticLights> made = make_caustic_lights(world, progress);
         kept.made = made.get();
         kept.of = light_digest(world.scene);
         return made;
     });
 }
 
-void prepare_shadows(const World& world) {
+const CausticLights* known_caustic_lights(const World& world) {
+    return world.geometry->caustics->lights.find();
+}
+
+void prepare_shadows(const World& world, const Progress& progress) {
     if (!has_shadows(world)) return;
     object_tracer(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
         if (world.optics[i].mirror) limit_tracer(world, i);
-    if (has_caustics(world)) caustic_lights(world);
+    if (has_caustics(world)) caustic_lights(world, progress);
 }
 
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n) {

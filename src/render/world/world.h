@@ -135,11 +135,16 @@ Segments::Bits casts_shadow(const World& world, const Segments& segments);
 /// not come straight.
 Segments::Bits meets_anything(const World& world, const Segments& segments);
 
-/// The beams of lights with caustics, made when first asked for.
-const CausticLights& caustic_lights(const World& world);
+/// The beams of lights with caustics, made when first asked for. Throws Interrupted soon after `progress`
+/// says so, and then the next one to ask makes them.
+const CausticLights& caustic_lights(const World& world, const Progress& progress = {});
 
-/// Builds what casts_shadow asks, where the scene has shadows: before many threads do.
-void prepare_shadows(const World& world);
+/// They, where they are made already; null: they are not.
+const CausticLights* known_caustic_lights(const World& world);
+
+/// Builds what casts_shadow asks, and beams of light, where the scene has shadows: before many threads do.
+/// Throws as caustic_lights does.
+void prepare_shadows(const World& world, const Progress& progress = {});
 
 /// The optic's facets at resolution n. The last resolution of each optic is kept, so that a new camera finds
 /// it.
@@ -151,6 +156,10 @@ std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t 
 struct CausticLights {
     PathWorld optics;                                               // as lights see them
     std::vector<std::vector<std::unique_ptr<BeamLight>>> by_light;  // its samples'; none: it is not followed
+    std::shared_ptr<const ReceiverFaces> faces;                     // of World::objects
+
+    /// The samples of all lights.
+    std::vector<const BeamLight*> all() const;
 };
 
 /// The light as sources whose rays start in a point or are parallel: its samples, of a sphere parts of its
@@ -165,7 +174,7 @@ bool is_rough(const World& world, Id optic);
 bool has_rough_optics(const World& world);
 
 /// The beams of one light of the scene, of each of its samples, whether it says that it is followed or not.
-/// Throws UsageError for a light that has none.
+/// Throws UsageError for a light that has none, and Interrupted soon after `progress` says so.
 std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, const PathWorld& optics,
                                                          std::size_t light, const BeamGridParams& params = {},
                                                          const Progress& progress = {});
@@ -176,8 +185,13 @@ Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Rec
 /// The scene's optics and depth, with first events of both kinds.
 PathWorld optics_for_lights(const World& world);
 
-/// Beams of all lights that are followed; made when first asked for.
-std::unique_ptr<CausticLights> make_caustic_lights(const World& world);
+/// Beams of all lights that are followed. Throws Interrupted soon after `progress` says so.
+std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Progress& progress = {});
+
+/// Gathers now, as a stage of its own, what lights send to these faces, that else is gathered when a receiver
+/// first asks for it. Throws Interrupted soon after `progress` says so.
+void gather_light(std::span<const BeamLight* const> lights, std::span<const ReceiverSide> faces,
+                  const Progress& progress);
 
 /// Warns of what beams leave out.
 void warn_of_lost_light(const World& world, const CausticLights& lights, const Warn& warn);
