@@ -137,6 +137,7 @@ struct PlaneBeams::Maker {
         Curved one{beam, {at, beam.lights()}, index, way};
         one.sides = sides_of(one.curve, bulge);
         one.mean_light = mean_light(one.curve.light, one.sides);
+        one.strips = strips_around(at);
         const LightBeam& of = source.beams.beams[index];
         one.is_plain = way == Way::kFree && source.beams.histories[of.history].medium == kNone;
         curved.push_back(one);
@@ -206,6 +207,10 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
     for (const std::uint32_t entry : order_) boxes_.push_back(box_of(entry));
     if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+    std::vector<Box2> in_order;
+    in_order.reserve(order_.size());
+    for (const std::uint32_t entry : order_) in_order.push_back(boxes_[entry]);
+    boxes_ = std::move(in_order);
 }
 
 PlaneBeams::Box2 PlaneBeams::hull_box(const std::array<Vec2, 6>& at) {
@@ -225,16 +230,27 @@ bool PlaneBeams::is_inside(const std::array<Vec2, 6>& at) {
     return std::max({-box.low.x, -box.low.y, box.high.x, box.high.y}) <= 0.5;
 }
 
-bool PlaneBeams::is_away(const std::array<Vec2, 6>& at) {
+/// Those of its sides' directions that its Bezier points lie in: they part it from what is beside (separating
+/// axes).
+std::array<PlaneBeams::Strip, 3> PlaneBeams::strips_around(const std::array<Vec2, 6>& at) {
     const std::array<Vec2, 6> hull = bezier_points(at);
-    return is_beyond(hull, 0.5, 0) || is_apart(hull, 0.5);
+    std::array<Strip, 3> strips;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 side = hull[(k + 1) % 3] - hull[k];
+        const Vec2 normal(-side.y, side.x);
+        strips[k] = {normal, INFINITY, -INFINITY};
+        for (const Vec2& point : hull) {
+            strips[k].low = std::min(strips[k].low, dot(normal, point));
+            strips[k].high = std::max(strips[k].high, dot(normal, point));
+        }
+    }
+    return strips;
 }
 
 /// All that comes to the footprint, times its part of the film.
 Vec3 PlaneBeams::light_of(const Curved& one, const std::array<Vec2, 6>& at) {
     const double measure = one.beam.corners.measure;
     if (is_inside(at)) return measure * one.mean_light;
-    if (is_away(at)) return Vec3(0);
     const PieceGrid& grid = PieceGrid::of(one.sides);
     CutPieces cut;
     cut_pieces(at, one.sides, cut);
@@ -267,11 +283,14 @@ PlaneBeams::Map PlaneBeams::map_to(const ReceiverPlane& footprint) const {
     return map;
 }
 
-PlaneBeams::Box2 PlaneBeams::box_of(const ReceiverPlane& footprint, const Map& map) const {
+PlaneBeams::Parallelogram PlaneBeams::parallelogram_of(const ReceiverPlane& footprint, const Map& map) {
     const Mat2 back = glm::inverse(map.turn);
-    const Vec2 middle = -(back * map.origin);
-    const Vec2 half = footprint.has_footprint ? 0.5 * (glm::abs(back[0]) + glm::abs(back[1])) : Vec2(0);
-    return {middle - half, middle + half};
+    return {-(back * map.origin), footprint.has_footprint ? 0.5 * back : Mat2(0)};
+}
+
+PlaneBeams::Box2 PlaneBeams::box_of(const Parallelogram& footprint) {
+    const Vec2 half = glm::abs(footprint.half[0]) + glm::abs(footprint.half[1]);
+    return {footprint.middle - half, footprint.middle + half};
 }
 
 void PlaneBeams::build(std::uint32_t first, std::uint32_t end) {

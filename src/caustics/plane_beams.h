@@ -54,6 +54,22 @@ class PlaneBeams {
                        const Use& use) const;
 
   private:
+    /// Lines of one direction in the plane: those from `low` to `high` along its normal.
+    struct Strip {
+        Vec2 normal{0};
+        double low = 0, high = 0;
+    };
+    /// A footprint in the plane's coordinates.
+    struct Parallelogram {
+        Vec2 middle{0};
+        Mat2 half{1};  // of its sides
+        bool is_beside(const Strip& strip) const {
+            const double at = dot(strip.normal, middle);
+            const double reach =
+                std::fabs(dot(strip.normal, half[0])) + std::fabs(dot(strip.normal, half[1]));
+            return at - reach > strip.high || at + reach < strip.low;
+        }
+    };
     struct Curved {
         CurvedBeam beam;
         FallenCurve curve;
@@ -61,6 +77,7 @@ class PlaneBeams {
         Way way = Way::kUnknown;
         int sides = 4;          // of its pieces
         bool is_plain = false;  // all of it comes, through air
+        std::array<Strip, 3> strips{};
         Vec3 mean_light{0};
     };
     struct Flat {  // what the plane cuts, or lies askew to
@@ -94,7 +111,7 @@ class PlaneBeams {
     static std::array<Vec2, 6> fallen_on(const Curved& one, const Map& map);
     // Of where a curved beam falls, in a footprint's coordinates.
     static bool is_inside(const std::array<Vec2, 6>& at);
-    static bool is_away(const std::array<Vec2, 6>& at);
+    static std::array<Strip, 3> strips_around(const std::array<Vec2, 6>& at);
     static Vec3 light_of(const Curved& one, const std::array<Vec2, 6>& at);
     template <typename Use>
     static void use_parts(const Curved& one, const std::array<Vec2, 6>& at, const Use& use);
@@ -103,16 +120,17 @@ class PlaneBeams {
     /// Around the Bezier points of a quadratic triangle.
     static Box2 hull_box(const std::array<Vec2, 6>& at);
     Map map_to(const ReceiverPlane& footprint) const;
-    Box2 box_of(const ReceiverPlane& footprint, const Map& map) const;
+    static Parallelogram parallelogram_of(const ReceiverPlane& footprint, const Map& map);
+    static Box2 box_of(const Parallelogram& footprint);
     Box2 box_of(std::uint32_t entry) const;
     void build(std::uint32_t first, std::uint32_t end);
 
     ReceiverPlane plane_;
     std::vector<Curved> curved_;
     std::vector<Flat> flat_;
-    std::vector<Box2> boxes_;           // of all of them
     std::vector<Node> nodes_;           // depth first
     std::vector<std::uint32_t> order_;  // of the curved, and after them of the flat
+    std::vector<Box2> boxes_;  // of all of them: until they are in a tree by number, then in its order
 };
 
 template <typename Use>
@@ -124,7 +142,7 @@ void PlaneBeams::for_each_near(const Box2& asked, const Use& use) const {
             continue;
         }
         for (std::uint32_t i = node.first; i < node.end; ++i)
-            if (boxes_[order_[i]].meets(asked)) use(order_[i]);
+            if (boxes_[i].meets(asked)) use(order_[i]);
         ++n;
     }
 }
@@ -132,7 +150,7 @@ void PlaneBeams::for_each_near(const Box2& asked, const Use& use) const {
 template <typename Use>
 void PlaneBeams::for_each_piece(const ReceiverPlane& point, const Use& use) const {
     const Map map = map_to(point);
-    for_each_near(box_of(point, map), [&](std::uint32_t entry) {
+    for_each_near(box_of(parallelogram_of(point, map)), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) return use_flat(flat_[entry - curved_.size()], map, 0, use);
         const Curved& one = curved_[entry];
         one.beam.for_each_piece({fallen_on(one, map), one.curve.light}, 0, one.sides,
@@ -146,7 +164,8 @@ template <typename UseLight, typename Use>
 void PlaneBeams::for_each_part(const ReceiverPlane& footprint, bool sums, const UseLight& use_light,
                                const Use& use) const {
     const Map map = map_to(footprint);
-    for_each_near(box_of(footprint, map), [&](std::uint32_t entry) {
+    const Parallelogram asked = parallelogram_of(footprint, map);
+    for_each_near(box_of(asked), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) {
             use_flat(flat_[entry - curved_.size()], map, 0.5,
                      [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
@@ -156,6 +175,8 @@ void PlaneBeams::for_each_part(const ReceiverPlane& footprint, bool sums, const 
             return;
         }
         const Curved& one = curved_[entry];
+        for (const Strip& strip : one.strips)
+            if (asked.is_beside(strip)) return;
         const std::array<Vec2, 6> at = fallen_on(one, map);
         if (sums && one.is_plain) {
             const Vec3 light = light_of(one, at);
@@ -174,7 +195,6 @@ void PlaneBeams::use_parts(const Curved& one, const std::array<Vec2, 6>& at, con
         return use(one.index, one.way, one.beam.corners, fallen,
                    FootprintPart{one.beam.corners.measure, Vec3(1.0 / 3)});
     }
-    if (is_away(at)) return;
     const PieceGrid& grid = PieceGrid::of(one.sides);
     CutPieces cut;
     cut_pieces(at, one.sides, cut);
