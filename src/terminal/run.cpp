@@ -97,7 +97,9 @@ void print(const std::string& text) {
     stop_at_once(true);  // a pipe that nobody reads
     std::fputs(text.c_str(), stdout);
     if (!text.empty() && text.back() != '\n') std::fputc('\n', stdout);
-    if (std::fflush(stdout) != 0) throw OutputError("stdout", "cannot be written");
+    // A flush knows nothing of a write before it that failed.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        throw OutputError("standard output", "cannot be written");
 }
 
 /// What the words ask for, and where its answer goes.

@@ -172,3 +172,21 @@ TEST_CASE("a signal ends the command while it reads a pipe that never ends", "[c
         CHECK(!fs::exists(folder + "/out.exr"));
     }
 }
+
+TEST_CASE("an answer that standard output cannot take is an error, however long it is", "[cli][streams]") {
+    const std::string folder = scratch_dir("cli_streams_full");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    std::string points;
+    for (int k = 0; k < 200; ++k) points += "0.1,0.2," + std::to_string(0.01 * k) + "\n";
+    const std::string many = write_file(folder, "points.csv", points);
+    for (const std::string& words :
+         {std::string("scene example mirror-sphere"), std::string("scene schema"), std::string("help render"),
+          std::string("man render"), std::string("completion bash"),
+          "project " + scene + " -q --points " + many}) {
+        const std::string said = folder + "/said.txt";
+        const CommandRun run = run_trilens(words + " > /dev/full 2> " + said + "; exit $?;");
+        INFO(words << "\n" << bytes_of(said));
+        CHECK(run.exit_code == 4);
+        CHECK(bytes_of(said).find("standard output: cannot be written") != std::string::npos);
+    }
+}
