@@ -1,8 +1,10 @@
 // Maps both ways: there and back, against each other, and as other programs read them.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -197,6 +199,36 @@ TEST_CASE("a warp mesh is exact at its nodes and of second order between them", 
     CHECK(text.rfind("2\n65 37\n", 0) == 0);
     CHECK(std::count(text.begin(), text.end(), '\n') == 2 + 65 * 37);
     CHECK(obj_mesh(coarse).find("\nf ") != std::string::npos);
+}
+
+TEST_CASE("a warp mesh stops when it is asked to, and says how far it is", "[inverse]") {
+    const auto world = world_of(dome_json());
+    std::atomic<bool> cancel = false;
+    std::size_t stop_after = 3;
+    std::vector<double> said;
+    Progress progress;
+    progress.cancel = &cancel;
+    progress.report = [&](double done) {
+        said.push_back(done);
+        cancel = said.size() == stop_after;
+    };
+    const std::clock_t start = std::clock();
+    CHECK_THROWS_AS(make_warp_mesh(*world, dome_request(), {2049, 2049, 1}, progress), Interrupted);
+    CHECK(double(std::clock() - start) / CLOCKS_PER_SEC < 3);  // of 20 and more for the whole
+    CHECK(said.size() == 3);
+
+    cancel = false;
+    stop_after = 0;
+    for (const WarpMeshParams& params :
+         {WarpMeshParams{129, 73, 1}, WarpMeshParams{129, 65, 1, WarpGrid::kTarget},
+          WarpMeshParams{0, 0, 20}}) {
+        said.clear();
+        make_warp_mesh(*world, dome_request(), params, progress);
+        REQUIRE(said.size() > 3);
+        CHECK(std::is_sorted(said.begin(), said.end()));
+        CHECK(said[1] < 0.9);
+        CHECK(said.back() == 1);
+    }
 }
 
 TEST_CASE("the first and the last ray of a warp mesh in rays and rings are one", "[inverse][law]") {

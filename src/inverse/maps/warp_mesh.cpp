@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr double kJustInside = 1 - 1e-9;
 /// Cells whose errors are measured: of more every second, third... is.
 constexpr std::size_t kMostMeasured = 50'000;
+/// Places found between two looks at the progress.
+constexpr std::size_t kFoundAtOnce = 1 << 13;
 /// Of a fisheye's mesh, so that its cells are about square a third of the way out.
 constexpr double kRingsPerRay = 0.5;
 /// So many times the columns in a step, at most.
@@ -34,13 +37,16 @@ struct MeshMaker {
     Proxy proxy;
     FilmTargetsParams to_target;
     FilmImagesParams to_film;
+    const Progress& progress;
+    double begun = 0, each = 0;  // share of the work that is done, and of one place
 
-    MeshMaker(const World& of, const FilmMapRequest& asked, WarpGrid regular_on)
+    MeshMaker(const World& of, const FilmMapRequest& asked, WarpGrid regular_on, const Progress& reports)
         : world(of),
           request(asked),
           grid(regular_on),
           target(asked.target, of.scene),
-          proxy(asked.proxy, of, center_of_directions(of, asked.center, asked.optic)) {
+          proxy(asked.proxy, of, center_of_directions(of, asked.center, asked.optic)),
+          progress(reports) {
         if (!target.has_directions())
             throw UsageError("a warp mesh is of a picture of directions: fisheye, equirect or cubemap");
         if (grid == WarpGrid::kTarget && asked.target.kind == TargetKind::kCubemap)
@@ -73,14 +79,29 @@ struct MeshMaker {
         return 0.5 * size * (Vec2(1) + kJustInside * share.y * Vec2(std::sin(angle), std::cos(angle)));
     }
 
-    std::vector<MapImages> find(const std::vector<Vec2>& places, bool with_jacobians) const {
+    /// The places of a mesh of so many nodes, and those at which it is measured, as shares of the work.
+    void begin(std::size_t nodes, double from, double to) {
+        const std::size_t measured = (is_straight() ? 3 : 5) * std::min(nodes, 2 * kMostMeasured);
+        begun = from;
+        each = (to - from) / static_cast<double>(nodes + measured);
+    }
+
+    std::vector<MapImages> find(const std::vector<Vec2>& places, bool with_jacobians) {
         std::vector<MapImages> found(places.size());
         FilmTargetsParams asked = to_target;
         asked.with_jacobians = with_jacobians;
-        if (is_on_film())
-            find_film_targets(world, asked, target, proxy, places, found);
-        else
-            find_film_images(world, to_film, world_places(target, proxy, places), found);
+        for (std::size_t first = 0; first < places.size(); first += kFoundAtOnce) {
+            if (progress.cancelled()) throw Interrupted();
+            const std::size_t count = std::min(kFoundAtOnce, places.size() - first);
+            const std::span<const Vec2> some = std::span(places).subspan(first, count);
+            const std::span<MapImages> here = std::span(found).subspan(first, count);
+            if (is_on_film())
+                find_film_targets(world, asked, target, proxy, some, here);
+            else
+                find_film_images(world, to_film, world_places(target, proxy, some), here);
+            begun += each * static_cast<double>(count);
+            progress(std::min(1.0, begun));
+        }
         return found;
     }
 };
@@ -109,7 +130,7 @@ const MapImage& image_of_node(const MeshMaker& maker, const MapImages& images) {
     return maker.is_on_film() ? images[0] : best_resolved(images);
 }
 
-WarpMesh nodes_of(const MeshMaker& maker, int columns, int rows) {
+WarpMesh nodes_of(MeshMaker& maker, int columns, int rows) {
     const Film& film = maker.world.scene.film;
     WarpMesh mesh;
     mesh.grid = maker.grid;
@@ -194,7 +215,7 @@ std::vector<Cell> evenly_spread(const std::vector<Cell>& cells, std::size_t most
 }
 
 /// Errors of whole cells, if there are.
-void measure(const MeshMaker& maker, WarpMesh& mesh) {
+void measure(MeshMaker& maker, WarpMesh& mesh) {
     const std::vector<Cell> cells = evenly_spread(whole_cells(mesh), kMostMeasured);
     std::vector<double> errors(cells.size(), -1);
     for (const Means& means : probes()) {
@@ -264,7 +285,7 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
     if (!chooses && (params.columns < 2 || params.rows < 2 || params.columns > 8193 || params.rows > 8193))
         throw UsageError("a warp mesh has 2 to 8193 nodes a side");
     if (!(params.max_error > 0)) throw UsageError("the largest error is a positive number of pixels");
-    const MeshMaker maker(world, request, params.grid);
+    MeshMaker maker(world, request, params.grid, progress);
     const double aspect = maker.is_on_film()     ? double(world.scene.film.height) / world.scene.film.width
                           : !maker.is_straight() ? kRingsPerRay
                                                  : double(request.target.height) / request.target.width;
@@ -272,10 +293,14 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
         return std::max(2, static_cast<int>((columns - 1) * aspect + 0.5) + 1);
     };
     int columns = chooses ? 33 : params.columns;
+    double done = 0;
     while (true) {
-        WarpMesh mesh = nodes_of(maker, columns, chooses ? rows_for(columns) : params.rows);
+        const int rows = chooses ? rows_for(columns) : params.rows;
+        const double until = chooses ? double(columns) / kMostWarpColumns : 1;
+        maker.begin(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), done, until);
+        done = until;
+        WarpMesh mesh = nodes_of(maker, columns, rows);
         measure(maker, mesh);
-        if (progress.cancelled()) throw Interrupted();
         if (!chooses || (mesh.error && mesh.error->p99 <= params.max_error) || columns >= kMostWarpColumns) {
             extend_rim(mesh, maker.found());
             progress(1);
@@ -286,7 +311,6 @@ WarpMesh make_warp_mesh(const World& world, const FilmMapRequest& request, const
             mesh.error ? std::clamp(1.1 * std::sqrt(mesh.error->p99 / params.max_error), 1.2, kLargestStep)
                        : kLargestStep;
         columns = std::min(kMostWarpColumns, static_cast<int>(finer * (columns - 1)) + 1);
-        progress(double(columns) / kMostWarpColumns);
     }
 }
 
