@@ -201,6 +201,7 @@ class Checker {
         if (schema.contains("oneOf")) {
             Json choices = Json::array(), given = Json::array();
             for (const Json& branch : schema.at("oneOf")) {
+                if (!branch.contains("required")) continue;  // of what is no object
                 choices.push_back(branch.at("required").at(0));
                 if (matches(value, branch)) given.push_back(branch.at("required").at(0));
             }

@@ -1,4 +1,6 @@
 // The printed schema and the loader agree, as an independent validator (valijson, draft 7) sees it.
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include "scene/examples/examples.h"
@@ -83,6 +85,31 @@ TEST_CASE("the schema accepts the good and refuses the broken", "[scene][bad-inp
     CHECK(broken("/render/paths", {"direct", "direct"}));
     CHECK_FALSE(broken("/meshes/1/x-note", 3));
     CHECK_FALSE(broken("/extras", {{"free", 1}}));
+
+    const std::string texture = "/materials/0/baseColorTexture";
+    CHECK_FALSE(broken(texture, "a.png"));
+    CHECK_FALSE(broken(texture, {{"file", "a.png"}}));
+    CHECK_FALSE(broken(texture, {{"pattern", "checker"}}));
+    CHECK(broken(texture, ""));
+    CHECK(broken(texture, 3));
+    CHECK(broken(texture, nlohmann::json::object()));
+    CHECK(broken(texture, {{"file", "a.png"}, {"pattern", "checker"}}));
+}
+
+TEST_CASE("the schema accepts every scene that comes with the program", "[scene][oracle]") {
+    Validator validator;
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_dir() + "/scenes")) {
+        if (entry.path().extension() != ".json") continue;
+        std::ifstream file(entry.path());
+        const nlohmann::json scene = nlohmann::json::parse(file, nullptr, true, true);
+        // What it changes of an import is no whole mesh.
+        if (!scene.contains("cameras") || scene.contains("import")) continue;
+        INFO(entry.path());
+        CHECK(validator.accepts(scene));
+        ++scenes;
+    }
+    CHECK(scenes > 50);
 }
 
 TEST_CASE("law: what loads is what the schema accepts but for what a schema cannot say",

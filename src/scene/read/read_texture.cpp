@@ -145,7 +145,8 @@ Json texture_schema() {
         {.title = "a texture", .description = "A picture's file, or how a picture lies."}, texture_fields());
     schema["type"] = {"string", "object"};
     schema["minLength"] = 1;
-    schema["oneOf"] = Json::parse(R"([{"required": ["file"]}, {"required": ["pattern"]}])");
+    schema["oneOf"] = Json::parse(R"([{"type": "string"}, {"type": "object", "required": ["file"]},
+                                      {"type": "object", "required": ["pattern"]}])");
     return schema;
 }
 
