@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/util/format.h"
 #include "fit_scenes.h"
 #include "inverse/fit/fit.h"
 #include "inverse/fit/fit_problem.h"
@@ -209,6 +210,21 @@ TEST_CASE("outliers are told, and leave the parameters where they were", "[inver
     CHECK(found.pairs[0].state == PairState::kOutlier);
     CHECK(found.pairs[7].state != PairState::kUsed);
     CHECK(worst_error(found, truth, one.json) < 0.04);
+    for (const std::string& warning : found.warnings) CHECK(warning.find("outliers") == std::string::npos);
+}
+
+TEST_CASE("a fit that agrees with few pairs says so", "[inverse]") {
+    const Scene scene = parse_scene(trilens_test::ball_scene());
+    std::vector<Correspondence> pairs = make_pairs(scene, 12, "R");
+    FitRequest request;
+    request.free = {"/meshes/0/primitive/radius"};
+    CHECK(fit_scene(scene, pairs, request).warnings.empty());
+    for (std::size_t i = 0; i < 9; ++i) pairs[i].pixel += (i % 2 == 0 ? 1.0 : -1.0) * Vec2(9, -12);
+    const FitResult found = fit_scene(scene, pairs, request);
+    REQUIRE(2 * found.outliers > pairs.size());
+    const std::string says = fmt::format("{} of {} pairs are outliers", found.outliers, pairs.size());
+    CHECK(std::any_of(found.warnings.begin(), found.warnings.end(),
+                      [&](const std::string& warning) { return warning.find(says) == 0; }));
 }
 
 TEST_CASE("what no pair tells of is named: a body's turn about its axis, and two names of one motion",
@@ -316,4 +332,22 @@ TEST_CASE("what cannot be fitted is refused with its place", "[inverse][bad-inpu
     CHECK(read[0].point == Vec3(1, 2, 3));
     CHECK(read[0].pixel == Vec2(4, 5));
     CHECK(read[0].camera == "main");
+
+    request.path = "R";
+    const auto told = [&](const std::string& text) {
+        try {
+            fit_scene(scene, parse_correspondences(text, "p.csv"), request);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("accepted");
+    };
+    const std::string cells = "\n1,2,3,4,5,";
+    CHECK(told("x,y,X,Y,Z,camera" + cells + cells + "side\n") ==
+          "p.csv: line 3: there is no camera \"side\"; known: main");
+    CHECK(told("x,y,X,Y,Z,path" + cells + "R" + cells + "RX\n").find("p.csv: line 3: a path is D") == 0);
+    request.match = FitMatch::kId;
+    CHECK(told("1,2,3,4,5\n") == "p.csv: line 1: names no image, which a match by id asks for");
+    CHECK(told("x,y,X,Y,Z,image" + cells + "0" + cells + "\n").find("p.csv: line 3: names no image") == 0);
+    CHECK_THROWS_AS(fit_scene(scene, pairs, request), UsageError);
 }

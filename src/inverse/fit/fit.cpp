@@ -18,15 +18,14 @@ namespace {
 
 constexpr double kHighCorrelation = 0.95;
 
-std::size_t camera_named(const Scene& scene, const std::string& name, std::size_t pair) {
+std::size_t camera_named(const Scene& scene, const std::string& name) {
     if (name.empty()) return scene.own_camera;
     std::vector<std::string> names;
     for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
         if (scene.cameras[c].name == name || std::to_string(c) == name) return c;
         names.push_back(scene.cameras[c].name);
     }
-    throw UsageError(
-        fmt::format("pair {}: there is no camera \"{}\"{}", pair, name, suggestion(name, names)));
+    throw UsageError(fmt::format("there is no camera \"{}\"{}", name, suggestion(name, names)));
 }
 
 bool is_finite(const Vec3& v) {
@@ -35,6 +34,7 @@ bool is_finite(const Vec3& v) {
 
 std::vector<FitPair> prepare_pairs(const Scene& scene, std::span<const Correspondence> given,
                                    const FitRequest& request) {
+    check_path_word(request.path);
     std::vector<FitPair> pairs;
     for (std::size_t i = 0; i < given.size(); ++i) {
         const Correspondence& from = given[i];
@@ -44,9 +44,16 @@ std::vector<FitPair> prepare_pairs(const Scene& scene, std::span<const Correspon
         pair.pixel = pair.guess = from.pixel;
         pair.point = from.point;
         pair.sigma = from.sigma > 0 ? from.sigma : request.sigma;
-        pair.camera = camera_named(scene, from.camera, i);
         pair.word = from.path.empty() ? request.path : from.path;
-        check_path_word(pair.word);
+        try {
+            pair.camera = camera_named(scene, from.camera);
+            check_path_word(pair.word);
+            if (request.match == FitMatch::kId && from.image < 0)
+                throw UsageError("names no image, which a match by id asks for");
+        } catch (const UsageError& wrong) {
+            if (from.place.empty()) throw UsageError(fmt::format("pair {}: {}", i, wrong.what()));
+            throw InputError("", from.place, wrong.what());
+        }
         pairs.push_back(std::move(pair));
     }
     return pairs;
@@ -287,6 +294,12 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
             fmt::format("{} of {} pairs are lost: their rays miss the optics, or their points "
                         "have no image near",
                         result.lost, given.size()));
+    if (2 * result.outliers > given.size())
+        result.warnings.push_back(fmt::format(
+            "{} of {} pairs are outliers, more than {:g} px from their images: what was found fits few of "
+            "them, and its standard deviations hold for those alone; are points in the scene's unit, and "
+            "pixels those of its film?",
+            result.outliers, given.size(), request.huber));
     tell_changes(problem, result);
     result.document = problem.document().dump(2) + "\n";
     return result;

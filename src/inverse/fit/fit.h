@@ -17,12 +17,13 @@ namespace trilens {
 
 /// A pixel and the world point that is seen there.
 struct Correspondence {
-    Vec2 pixel{0};       // from the film's top left; a pixel's centre is at .5
-    Vec3 point{0};       // world
-    double sigma = 0;    // standard deviation of the pixel, in x and in y; 0: FitRequest::sigma
-    std::string camera;  // its name, or its place among the cameras; empty: the scene's own
-    std::string path;    // "R", "TT", "D" (direct): see FitRequest::path; empty: the request's
-    int image = -1;      // FitMatch::kId: which of the images that project lists for the point, from 0
+    Vec2 pixel{0};           // from the film's top left; a pixel's centre is at .5
+    Vec3 point{0};           // world
+    double sigma = 0;        // standard deviation of the pixel, in x and in y; 0: FitRequest::sigma
+    std::string camera;      // its name, or its place among the cameras; empty: the scene's own
+    std::string path;        // "R", "TT", "D" (direct): see FitRequest::path; empty: the request's
+    int image = -1;          // FitMatch::kId: which of the images that project lists for the point, from 0
+    std::string place = {};  // where it was read, file and line: what is wrong with it is told with that
 };
 
 /// Pairs of a text file: a header that names its columns, of x, y, X, Y, Z (pixel and world) and, if wanted,
@@ -92,7 +93,7 @@ struct FitResult {
     std::size_t rank = 0;                           // below the number of parameters: see undetermined
     std::vector<std::string> undetermined;          // motions that no pair tells of, in words
     std::vector<std::vector<double>> null_vectors;  // the same: unit vectors of parameters in large steps
-    std::vector<std::string> warnings;              // of correlated parameters and of lost pairs
+    std::vector<std::string> warnings;              // of correlated parameters, and of pairs
     std::vector<SceneOverride> changes;             // what carries the scene's JSON to the fitted one
     std::string document;                           // the fitted scene's JSON
 };
@@ -103,7 +104,8 @@ struct FitResult {
 ///
 /// Throws InputError for pointers that name no number, a scene without JSON (Scene::resolved), pairs that are
 /// too few or not finite, cameras whose rays have no common eye and are not parallel; UsageError for cameras
-/// and paths that there are not; ComputationError where every pair is lost.
+/// and paths that there are not, and pairs without the image that FitMatch::kId asks for (InputError with the
+/// place of pairs that have one); ComputationError where every pair is lost.
 FitResult fit_scene(const Scene& scene, std::span<const Correspondence> pairs, const FitRequest& request,
                     const Progress& progress = {});
 

@@ -80,6 +80,7 @@ class PairColumns {
         if (cells.size() != columns_.size())
             fail("has " + std::to_string(cells.size()) + " values, not " + std::to_string(columns_.size()));
         Correspondence pair;
+        pair.place = name_ + ": line " + std::to_string(line_);
         const std::map<std::string, double*> numbers{{"x", &pair.pixel.x}, {"y", &pair.pixel.y},
                                                      {"X", &pair.point.x}, {"Y", &pair.point.y},
                                                      {"Z", &pair.point.z}, {"sigma", &pair.sigma}};
