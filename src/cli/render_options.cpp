@@ -193,6 +193,9 @@ void check_options(const RenderOptions& options, const std::string& format, cons
         throw UsageError("--aov is for .exr outputs: ." + format + " has no layers");
     if (options.frames.asks() && (is_vector(format) || !options.pixel.empty()))
         throw UsageError("--frames and --turntable are for .exr, .png and .apng outputs");
+    if (options.frames.asks() && !options.scene.time.empty())
+        throw UsageError(
+            "--time is of one picture: frames are times themselves, whole ones of the scene's animation");
     if (options.maps_tones() && format != "png" && format != "apng")
         throw UsageError(
             "--exposure, --tone and --white are for .png outputs; an .exr holds the light of the scene");

@@ -96,6 +96,8 @@ TEST_CASE("options that would do nothing are refused, each with its reason", "[c
                 {"max-error", "planar"});
     for (const char* ending : {"png", "svg", "obj"})
         check_usage("render " + scene + " -o out." + ending + " --aov all", {"--aov", ".exr", ending});
+    for (const char* frames : {"--frames 0..2", "--turntable 3"})
+        check_usage("render a.glb -o out.apng --time 1 " + std::string(frames), {"--time", "frames"});
     check_usage("project " + scene + " --point 0,0,3 --search complete --refine none",
                 {"--refine none", "--search facets"});
 }
