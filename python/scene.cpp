@@ -46,7 +46,8 @@ void tell_warnings(const Scene& scene, PythonCall& call) {
 Scene load(const std::filesystem::path& file, const py::dict& overrides, int resolution,
            const ImportOptions& import, const py::object& warn) {
     PythonCall call(py::none(), warn);
-    const SceneRequest request{file.string(), overrides_of(overrides), resolution, import};
+    const SceneRequest request{file.string(), overrides_of(overrides), resolution, import,
+                               call.progress("reading " + file.string())};
     Scene scene = call.run([&] { return load_scene(request); });
     tell_warnings(scene, call);
     return scene;

@@ -236,21 +236,27 @@ std::vector<Command> render_commands() {
 
     Command by_rays{
         .name = "trace", .summary = "draw the same scene by ray tracing: the truth", .schema = "trace"};
-    by_rays.options = joined({picture_options(*trace, ".exr (all layers) or .png (beauty)"),
-                              facet_options(*trace),
-                              {{.names = "--format",
-                                .target = &trace->format,
-                                .help = "what to write, whatever the output is called",
-                                .choices = {"exr", "png"}},
-                               {.names = "--surface",
-                                .target = &trace->surface,
-                                .help = "facets: the rays of render's facets; limit: the exact surface",
-                                .choices = {"facets", "limit"}}}});
+    by_rays.options =
+        joined({picture_options(*trace, ".exr (all layers), .png (beauty) or, of frames, .apng"),
+                frame_options(trace->frames),
+                facet_options(*trace),
+                {{.names = "--format",
+                  .target = &trace->format,
+                  .help = "what to write, whatever the output is called",
+                  .choices = {"exr", "png"}},
+                 {.names = "--surface",
+                  .target = &trace->surface,
+                  .help = "facets: the rays of render's facets; limit: the exact surface",
+                  .choices = {"facets", "limit"}}}});
     by_rays.body = [trace](Console& console) {
         if (trace->surface == "limit" &&
             (trace->rays + trace->grid + trace->facets != "" || trace->max_error >= 0 || trace->certify))
             throw UsageError(
                 "--rays, --grid, --facets, --max-error and --certify are about facets; add --surface facets");
+        if (trace->surface == "limit" && !trace->scene.resolution.empty())
+            console.warn(
+                "-n is about facets, and exact surfaces have none: it changes nothing without "
+                "--surface facets");
         return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth,
                    console);
     };

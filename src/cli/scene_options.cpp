@@ -214,8 +214,10 @@ SceneRequest scene_request(const SceneOptions& options) {
 Scene load_scene(const SceneOptions& options, Console& console) {
     console.files().reads({options.scene});
     const Stopwatch watch;
-    Scene scene = is_standard_stream(options.scene) ? read_standard_input(scene_request(options))
-                                                    : load_scene(scene_request(options));
+    SceneRequest request = scene_request(options);
+    request.progress = console.progress("reading " + options.scene);
+    stop_at_once(true);  // nothing is written yet
+    Scene scene = is_standard_stream(options.scene) ? read_standard_input(request) : load_scene(request);
     for (const auto& [optic, n] : resolutions_of(options.resolution).of_optic)
         set_resolution(scene, n, optic);
     for (const FileRead& file : scene.files) console.files().reads({file.path});

@@ -21,7 +21,7 @@ bool inflate_stream(std::string_view packed, std::span<char> to) {
     return packed.starts_with("\x1f\x8b") ? inflate_gzip(from, room) : inflate(from, room);
 }
 
-TextureReader texture_reader() {
+TextureReader texture_reader(const Progress& progress = {}) {
     return {[](const std::string& file) { return read_texture(file); },
             [](std::span<const unsigned char> encoded, const std::string& name) {
                 return decode_texture(encoded, name);
@@ -29,15 +29,16 @@ TextureReader texture_reader() {
             read_heights,
             draw_letters,
             film_moves,
-            inflate_stream};
+            inflate_stream,
+            progress};
 }
 
 bool is_image(const std::string& file) {
     return file.size() > 4 && file.compare(file.size() - 4, 4, ".exr") == 0;
 }
 
-Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride> overrides,
-                          const ImportOptions& import) {
+Scene load_scene_of_image(const SceneRequest& request) {
+    const std::string& file = request.file;
     const Image image = read_exr(file);
     const auto text = [&](const char* name) {
         const auto found = image.metadata.find(name);
@@ -48,8 +49,8 @@ Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride
     if (json.empty()) throw InputError(file, "", "the image carries no scene (trilens:scene)");
     std::error_code none;
     const bool has_folder = !folder.empty() && std::filesystem::is_directory(folder, none);
-    Scene scene = load_scene_text(json, has_folder ? SceneSource(file, folder) : SceneSource(file), overrides,
-                                  texture_reader(), import);
+    Scene scene = load_scene_text(json, has_folder ? SceneSource(file, folder) : SceneSource(file),
+                                  request.overrides, texture_reader(request.progress), request.import);
     for (std::size_t c = 0; c < scene.cameras.size(); ++c)
         if (scene.cameras[c].name == camera) scene.own_camera = c;
     for (const std::string& changed : changed_files(scene, text("trilens:files")))
@@ -61,9 +62,9 @@ Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride
 }  // namespace
 
 Scene load_scene(const SceneRequest& request) {
-    Scene scene = is_image(request.file)
-                      ? load_scene_of_image(request.file, request.overrides, request.import)
-                      : load_scene(request.file, request.overrides, texture_reader(), request.import);
+    Scene scene = is_image(request.file) ? load_scene_of_image(request)
+                                         : load_scene(request.file, request.overrides,
+                                                      texture_reader(request.progress), request.import);
     if (request.resolution != 0) set_resolution(scene, request.resolution);
     return scene;
 }

@@ -19,12 +19,13 @@ struct SceneRequest {
     std::vector<SceneOverride> overrides;  // in order, before the scene is checked
     int resolution = 0;                    // 1..1024: of every optic; 0: as the scene says
     ImportOptions import = {};             // of a glTF, or those that the scene imports
+    Progress progress = {};  // of what may take minutes (terrains with a tolerance); others report nothing
 };
 
 /// Reads, checks and resolves a scene with all that it names. An image's scene has the image's camera as its
 /// own; its files are looked for where the scene's were, or beside the image where that folder is gone. What
 /// is legal but doubtful is in Scene::warnings. Throws InputError with the file and the place of the first
-/// problem, and UsageError for `import` where nothing is imported.
+/// problem, UsageError for `import` where nothing is imported, Interrupted once `progress` says so.
 Scene load_scene(const SceneRequest& request);
 
 /// The same from JSON text; `folder`: where relative paths start, empty for where the program runs. `label`:

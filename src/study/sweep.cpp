@@ -288,7 +288,14 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepObser
 
 SweepSummary run_sweep(const SweepRequest& request, const SweepObserver& observer) {
     const std::unique_ptr<SweepJob> job = make_job(request, observer);
-    return run_sweep(job->params, job->callbacks);
+    SweepSummary summary = run_sweep(job->params, job->callbacks);
+    if (summary.other_runs > 0)
+        job->warn(
+            fmt::format("{} holds {} finished {} of values that are not asked for this time: {} in the "
+                        "folder, but in no table, plot or page",
+                        summary.folder, summary.other_runs, summary.other_runs == 1 ? "run" : "runs",
+                        summary.other_runs == 1 ? "it stays" : "they stay"));
+    return summary;
 }
 
 std::optional<LeftOutScene> why_left_out(const SweepRequest& request) {

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "base/util/error.h"
 #include "base/util/parallel.h"
 
 namespace trilens {
@@ -16,6 +18,7 @@ constexpr double kMostRatio = 1.3;
 /// Of the answers in the smallest cells, by which the greatest is raised.
 constexpr double kMostRise = 2;
 constexpr std::size_t kQueriesPerCell = 9;
+constexpr std::size_t kFewestAtOnce = 64, kMostAtOnce = 4096;  // queries between two reports
 
 std::size_t cell_index(int level, int i, int j) {
     return (static_cast<std::size_t>(j) << level) + static_cast<std::size_t>(i);
@@ -60,9 +63,11 @@ std::vector<std::vector<HeightRange>> height_ranges(const HeightSquare& heights,
 /// One level of cells after the other.
 class FilmScale::Refinement {
   public:
-    Refinement(const HeightSquare& heights, const SampleSpacing& spacing, const FilmScale& scale)
+    Refinement(const HeightSquare& heights, const SampleSpacing& spacing, const FilmScale& scale,
+               const Progress& progress)
         : heights_(heights),
           spacing_(spacing),
+          progress_(progress),
           levels_(scale.levels_),
           samples_(scale.samples_),
           ranges_(height_ranges(heights, scale.levels_, scale.samples_)) {}
@@ -122,6 +127,26 @@ class FilmScale::Refinement {
         queries.push_back({0.5 * (first + last), along, reach});
     }
 
+    /// A level counts as if all of its cells were asked for: what a film shows little of is done sooner.
+    void report(double share_of_level) const {
+        const double below = std::pow(4, level_ - std::min(kFirstLevel, levels_)),
+                     all = std::pow(4, levels_ + 1 - std::min(kFirstLevel, levels_)) - 1;
+        progress_(((below - 1) + 3 * below * share_of_level) / all);
+    }
+
+    std::vector<FilmMove> answers_to(std::span<const FilmMoveQuery> queries, const FilmMoves& moves) const {
+        std::vector<FilmMove> answers;
+        Portions portions(kFewestAtOnce, kMostAtOnce);
+        while (answers.size() < queries.size()) {
+            if (progress_.cancelled()) throw Interrupted();
+            const std::vector<FilmMove> some =
+                moves(queries.subspan(answers.size(), portions.next(queries.size() - answers.size())));
+            answers.insert(answers.end(), some.begin(), some.end());
+            report(static_cast<double>(answers.size()) / static_cast<double>(queries.size()));
+        }
+        return answers;
+    }
+
     void ask(const std::vector<Cell>& cells, const FilmMoves& moves) {
         std::vector<FilmMoveQuery> queries;
         std::vector<Cell> asked;
@@ -130,7 +155,7 @@ class FilmScale::Refinement {
             asked.push_back(cell);
             add_queries(cell, queries);
         }
-        const std::vector<FilmMove> answers = moves(queries);
+        const std::vector<FilmMove> answers = answers_to(queries, moves);
         found_.assign(std::size_t{1} << (2 * level_), {});
         for (std::size_t c = 0; c < asked.size(); ++c) {
             Found& found = found_[cell_index(level_, asked[c].i, asked[c].j)];
@@ -170,16 +195,18 @@ class FilmScale::Refinement {
 
     const HeightSquare& heights_;
     const SampleSpacing& spacing_;
+    const Progress& progress_;
     int levels_, samples_, level_ = 0;
     std::vector<std::vector<HeightRange>> ranges_;
     std::vector<Found> found_;  // of the level's cells; those that are not asked for are not shown
 };
 
-FilmScale::FilmScale(const HeightSquare& heights, const SampleSpacing& spacing, const FilmMoves& moves) {
+FilmScale::FilmScale(const HeightSquare& heights, const SampleSpacing& spacing, const FilmMoves& moves,
+                     const Progress& progress) {
     levels_ = std::min(kMostLevels, heights.levels());
     samples_ = 1 << (heights.levels() - levels_);
     most_.resize(static_cast<std::size_t>(levels_) + 1);
-    most_.back() = Refinement(heights, spacing, *this).run(moves);
+    most_.back() = Refinement(heights, spacing, *this, progress).run(moves);
     for (int level = levels_ - 1; level >= 0; --level) {
         std::vector<double>& coarse = most_[static_cast<std::size_t>(level)];
         coarse.resize(std::size_t{1} << (2 * level));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/description/film_move.h"
+#include "base/util/error.h"
 #include "terrain/height_square.h"
 
 namespace trilens {
@@ -20,8 +21,9 @@ class FilmScale {
     /// Cells are no smaller than this share of the square's side.
     static constexpr int kMostLevels = 7;
 
-    /// `moves`: of places of the terrain's own frame.
-    FilmScale(const HeightSquare& heights, const SampleSpacing& frame, const FilmMoves& moves);
+    /// `moves`: of places of the terrain's own frame. Throws Interrupted once `progress` says so.
+    FilmScale(const HeightSquare& heights, const SampleSpacing& frame, const FilmMoves& moves,
+              const Progress& progress = {});
 
     /// Pixels per unit of y, the most of all places less than `half` samples from (x, y), along both axes;
     /// both multiples of `half`, which is a power of 2.

@@ -104,7 +104,7 @@ void require_few(std::size_t count) {
 }  // namespace
 
 TerrainMesh make_terrain(const HeightGrid& heights, const TerrainShape& shape,
-                         const std::optional<Thinning>& thinning) {
+                         const std::optional<Thinning>& thinning, const Progress& progress) {
     TerrainMesh mesh;
     mesh.whole_triangles =
         2 * static_cast<std::size_t>(heights.columns - 1) * static_cast<std::size_t>(heights.rows - 1);
@@ -117,7 +117,7 @@ TerrainMesh make_terrain(const HeightGrid& heights, const TerrainShape& shape,
     KeptSample is_kept = [](int, int) { return true; };
     if (thinning) {
         std::optional<FilmScale> scale;
-        if (thinning->moves) scale.emplace(square, frame.spacing(), thinning->moves);
+        if (thinning->moves) scale.emplace(square, frame.spacing(), thinning->moves, progress);
         worth.emplace(square, thinning->rule, frame.spacing(),
                       DetailWeights{thinning->region, scale ? &*scale : nullptr});
         is_kept = [&, threshold = thinning->threshold / shape.size.y](int x, int y) {

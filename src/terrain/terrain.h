@@ -42,8 +42,9 @@ struct TerrainMesh {
 };
 
 /// The triangles of the grid, where `thinning` is given those that matter. Cells around samples without a
-/// height are holes. Throws std::length_error, with how many there are, above kMostTerrainTriangles.
+/// height are holes. `progress`: of Thinning::moves, which may take minutes. Throws std::length_error, with
+/// how many there are, above kMostTerrainTriangles; Interrupted once `progress` says so.
 TerrainMesh make_terrain(const HeightGrid& heights, const TerrainShape& shape,
-                         const std::optional<Thinning>& thinning);
+                         const std::optional<Thinning>& thinning, const Progress& progress = {});
 
 }  // namespace trilens

@@ -146,6 +146,23 @@ TEST_CASE("points: a byte order mark is none of them, a first line with numbers 
     }
 }
 
+TEST_CASE("frames are traced as they are drawn, and a number of facets is told to be none of exact surfaces'",
+          "[cli][files]") {
+    const std::string folder = scratch_dir("cli_files_frames");
+    const std::string scene = quoted(write_file(folder, "room.json", small_scene()));
+    CHECK(run_trilens("trace " + scene + " --turntable 4 --frames 0..1 -o " + quoted(folder + "/f.##.png"))
+              .exit_code == 0);
+    const CommandRun still = run_trilens("trace " + scene + " -n 3 -o " + quoted(folder + "/still.png"));
+    CHECK(still.exit_code == 0);
+    CHECK(still.err.find("-n is about facets") != std::string::npos);
+    CHECK(bytes_of(folder + "/f.00.png") == bytes_of(folder + "/still.png"));
+    CHECK(bytes_of(folder + "/f.01.png") != bytes_of(folder + "/still.png"));
+    const CommandRun facets =
+        run_trilens("trace " + scene + " -n 3 --surface facets -o " + quoted(folder + "/facets.png"));
+    CHECK(facets.exit_code == 0);
+    CHECK(facets.err.empty());
+}
+
 TEST_CASE("common options stand before the command or behind it", "[cli][files]") {
     const CommandRun before = run_trilens("--json -t 1 info"), behind = run_trilens("info --json -t 1");
     CHECK(before.exit_code == 0);

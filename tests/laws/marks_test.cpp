@@ -2,6 +2,7 @@
 // hides them, and that nothing else of a picture changes.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -106,6 +107,23 @@ TEST_CASE("splats are the traced balls, directly, in a mirror and through glass"
             CHECK(total(splats, part) - total(plain, part) == Approx(wanted).epsilon(0.08));
         }
     }
+}
+
+TEST_CASE("points' images are reported while they are found, before the first row, and can be stopped",
+          "[marks]") {
+    const auto world = world_from(
+        "reported", marked_room("", R"(, "points": [)" + cloud_of(places_around(130), 0.02) + "]"), 8);
+    std::vector<double> told;
+    draw_picture(*world, {}, {[&](double done) { told.push_back(done); }}, ignore);
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    CHECK(told.front() < 0.3 * 65 / 130);
+    CHECK(told.back() == 1);
+    // Stopped at the first report.
+    std::atomic<bool> cancel = false;
+    std::size_t reports = 0;
+    const Progress stopping{[&](double) { ++reports, cancel = true; }, &cancel};
+    CHECK_THROWS_AS(draw_picture(*world, {}, stopping, ignore), Interrupted);
+    CHECK(reports == 1);
 }
 
 TEST_CASE("a splat smaller than a pixel keeps its light", "[marks][law]") {

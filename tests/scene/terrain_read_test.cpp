@@ -1,8 +1,10 @@
 // Terrains out of scene files: where they lie, what is refused, what is warned of.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/util/error.h"
 #include "scene/animation.h"
@@ -143,15 +145,20 @@ TEST_CASE("a terrain's tolerance is its heights' error on the film of its scene"
     CHECK(triangles(R"(, "tolerance": 0.1, "region": {"radii": [1, 1]})", usual) < by_height);
 }
 
-TEST_CASE("a terrain with a tolerance is thinned anew where its film changes", "[scene][terrain]") {
+TEST_CASE("a terrain with a tolerance is thinned anew where its film changes, and says how far that is",
+          "[scene][terrain]") {
     const HeightsInFile file(mountains(65, 65));
     const Scene scene = file.load(terrain_scene(file.keys(R"(, "tolerance": 1)")));
     const SceneOverride larger{"/film/width", "6400"};
     TextureReader reader = white_textures();
     reader.heights_from_file = [&](const std::string&) { return file.heights; };
     reader.film_moves = [](const Scene& of) { return moves_of(of.film.width); };
+    std::vector<double> told;
+    reader.progress = {[&](double done) { told.push_back(done); }};
     CHECK(load_frame(scene, 0, std::span(&larger, 1), reader).meshes[0].object.triangles.size() >
           scene.meshes[0].object.triangles.size());
+    CHECK(told.size() > 1);
+    CHECK(std::is_sorted(told.begin(), told.end()));
 }
 
 TEST_CASE("a terrain keeps its heights where a number of its scene changes", "[scene][terrain]") {

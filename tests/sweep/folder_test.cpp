@@ -186,6 +186,40 @@ TEST_CASE("sweep: replacing removes what sweeps write, all of it and nothing els
     CHECK(fake.run().count(RunState::kDone) == 2);
 }
 
+TEST_CASE("sweep: finished runs of other values stay, are counted, and are in no table", "[sweep]") {
+    const std::string folder = trilens_test::scratch_dir("folder_others");
+    FakeSweep fake(folder, {1, 2, 4});
+    CHECK(fake.run().other_runs == 0);
+    fake.params.axes = trilens_test::resolution_axes({4, 8});
+    fake.renders = 0;
+    const SweepSummary summary = fake.run();
+    CHECK(fake.renders == 1);
+    CHECK(summary.runs.size() == 2);
+    CHECK(summary.other_runs == 2);
+    CHECK(load_sweep(folder).other_runs == 2);
+    const std::string table = read_whole_file(folder + "/runs.csv").value();
+    CHECK_FALSE(contains(table, "n0002"));
+    CHECK(fs::exists(folder + "/runs/n0002/DONE"));
+    fs::remove(folder + "/runs/n0002/DONE");
+    CHECK(load_sweep(folder).other_runs == 1);
+}
+
+TEST_CASE("sweep: while a process is at a folder, others join it with the same values only", "[sweep]") {
+    const std::string folder = trilens_test::scratch_dir("folder_joined");
+    FakeSweep fake(folder, {1, 2});
+    fake.run();
+    const std::string plan = read_whole_file(folder + "/plan.jsonl").value();
+    {
+        const FileLock other = FileLock::wait(folder + "/lock", LockKind::kMany, {});
+        CHECK_NOTHROW(fake.run());
+        fake.params.axes = trilens_test::resolution_axes({1, 2, 3});
+        CHECK(contains(message_of([&] { fake.run(); }), "is being swept with other values"));
+        CHECK_THROWS_AS(fake.run(), UsageError);
+        CHECK(read_whole_file(folder + "/plan.jsonl") == plan);
+    }
+    CHECK(fake.run().runs.size() == 3);
+}
+
 TEST_CASE("sweep: a gallery's folder takes no sweep, and a sweep's folder no gallery", "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("folder_gallery");
     FakeSweep below(folder + "/ball", {1});

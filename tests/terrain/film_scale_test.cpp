@@ -1,8 +1,11 @@
 // How many pixels a terrain's heights are worth: no less than anywhere asked, little more, nothing out of
 // sight.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "support/mountains.h"
 #include "support/test.h"
@@ -75,6 +78,27 @@ TEST_CASE("what is not seen of a terrain is worth nothing, but beside what is", 
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x) worthless += wedge.most_around(x, y, 1) == 0 ? 1 : 0;
     CHECK(worthless > kSide * kSide * 8 / 10);
+}
+
+TEST_CASE("what a terrain's heights are worth is reported while it is asked, and can be stopped", "[terrain]") {
+    const HeightSquare square(mountains(kSide, kSide), std::numeric_limits<double>::quiet_NaN());
+    for (const Worth worth : {&near_an_eye, &in_a_wedge}) {
+        std::vector<double> told;
+        const FilmScale scale(square, kSpacing, moves_by(worth), {[&](double done) { told.push_back(done); }});
+        CHECK(told.size() >= 4);  // a level each, at least
+        CHECK(std::is_sorted(told.begin(), told.end()));
+        CHECK(told.front() > 0);
+        CHECK(told.back() <= 1);
+    }
+    std::atomic<bool> cancel = false;
+    std::size_t asked = 0;
+    const FilmMoves moves = [&](std::span<const FilmMoveQuery> queries) {
+        asked += queries.size();
+        cancel = true;
+        return moves_by(&near_an_eye)(queries);
+    };
+    CHECK_THROWS_AS(FilmScale(square, kSpacing, moves, {nullptr, &cancel}), Interrupted);
+    CHECK(asked <= 64);
 }
 
 TEST_CASE("where it is unknown how a terrain is seen all of it is kept, but what is even", "[terrain]") {

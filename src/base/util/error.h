@@ -117,6 +117,26 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// How much work is done between two reports: twice as much as before while that takes no time.
+class Portions {
+  public:
+    Portions(std::size_t first, std::size_t most) : size_(first), most_(most) {}
+
+    /// How much of what is left comes next; called before each portion.
+    std::size_t next(std::size_t left) {
+        constexpr double kNoTime = 0.05;  // seconds
+        if (has_begun_ && watch_.seconds() < kNoTime) size_ = size_ < most_ / 2 ? 2 * size_ : most_;
+        has_begun_ = true;
+        watch_ = {};
+        return left < size_ ? left : size_;
+    }
+
+  private:
+    std::size_t size_, most_;
+    bool has_begun_ = false;
+    Stopwatch watch_;
+};
+
 /// How long work will still take, from the speed of what repeats: what was done before the first report
 /// (facets made, rays fitted) is done once, and no measure of the rest.
 class TimeLeft {

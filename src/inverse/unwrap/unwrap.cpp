@@ -235,12 +235,10 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
         const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
             find_film_images(world, params, world_places(target, proxy, pixels), images);
         };
-        const Progress part{
-            [&](double done) { progress((static_cast<double>(i) + done) / double(photos.size())); },
-            progress.cancel};
+        const double share = 1 / double(photos.size());
         const SampledMap map(
             {request.target.width, request.target.height, first_cell(params.visibility), request.tolerance},
-            evaluate, part);
+            evaluate, progress.part(double(i) * share, share));
         result.exact_places += map.exact_count();
         result.worst_accepted = std::max(result.worst_accepted, map.worst_accepted());
         const PhotoDrawer drawer(request, photos[i], target, static_cast<Id>(i));

@@ -11,7 +11,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 1u << 16;  // whose images are held whole
+constexpr std::size_t kFewestAtOnce = 64, kMostAtOnce = 1u << 16;  // places whose images are held whole
 /// The square of half a pixel: no ellipse is narrower, and where it would be it is that much fainter.
 constexpr double kLeastSquare = 0.25;
 
@@ -162,13 +162,14 @@ PlacedMarks place_marks(const World& world, const FrameParams& frame, const Prog
     if (world.scene.points.empty() && world.scene.labels.empty()) return {};
     Placing placing(world, frame);
     std::size_t done = 0, all = 0;
+    Portions portions(kFewestAtOnce, kMostAtOnce);
     for (const PointCloud& cloud : world.scene.points) all += cloud.places.size();
     for (std::size_t i = 0; i < world.scene.points.size(); ++i) {
         const PointCloud& cloud = world.scene.points[i];
         const Entry entry{false, i, cloud.radius, cloud.size, cloud.min_weight};
-        for (std::size_t from = 0; from < cloud.places.size(); from += kPointsAtOnce) {
+        for (std::size_t from = 0, count = 0; from < cloud.places.size(); from += count) {
             if (progress.cancelled()) throw Interrupted();
-            const std::size_t count = std::min(kPointsAtOnce, cloud.places.size() - from);
+            count = portions.next(cloud.places.size() - from);
             placing.add(entry, std::span(cloud.places).subspan(from, count),
                         cloud.colors.empty() ? std::span(&cloud.color, 1)
                                              : std::span(cloud.colors).subspan(from, count));

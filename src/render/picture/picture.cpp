@@ -90,6 +90,8 @@ void advise_on_facets(const World& world, const PictureRequest& request, const L
 
 /// Of the light on all optics: less is not told of.
 constexpr double kToldShare = 0.002;
+/// Of the time of a picture with points: what finding their images is taken for.
+constexpr double kShareOfMarks = 0.3;
 
 /// What probing the optics' facets was found to cost and to bring; empty where all of them are used.
 std::vector<OpticProbes> probes_of(const World& world, const Viewer& viewer) {
@@ -270,8 +272,11 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     const Stopwatch preparing;
     const Progress after_beams = prepare_caustics(world, progress);
     const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, warn);
-    const Progress drawing_progress = gather_seen(world, *viewer, layers, after_beams);
-    const PlacedMarks marks = place_marks(world, request.frame, {nullptr, progress.cancel});
+    const Progress after_gathering = gather_seen(world, *viewer, layers, after_beams);
+    const double share_of_marks = world.scene.points.empty() ? 0 : kShareOfMarks;
+    if (share_of_marks > 0) after_gathering.begin_stage("images of points", share_of_marks);
+    const PlacedMarks marks = place_marks(world, request.frame, after_gathering.part(0, share_of_marks));
+    if (share_of_marks > 0) after_gathering.begin_stage("");
     const MarkPainter painter(world, marks, layers.shown);
     picture.prepare_seconds = preparing.seconds();
 
@@ -297,7 +302,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     const bool in_strips = sink || request.watch;
     const Stopwatch drawing;
     picture.image = draw_layers(
-        world, *viewer, layers, drawing_progress,
+        world, *viewer, layers, after_gathering.part(share_of_marks, 1 - share_of_marks),
         {&picture.statistics, in_strips ? &described : nullptr, marks.marks.empty() ? nullptr : &painter});
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();

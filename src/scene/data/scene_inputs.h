@@ -14,6 +14,7 @@
 #include "base/description/marks.h"
 #include "base/description/material.h"
 #include "base/image/height_grid.h"
+#include "base/util/error.h"
 
 namespace trilens {
 
@@ -54,7 +55,8 @@ struct TextureReader {
     std::function<TextMask(const TextStyle& style)> letters = {};  // none: labels have no letters
     /// Of all cameras of a scene that is read but for terrains with a tolerance, its optics as they are.
     std::function<FilmMoves(const Scene& scene)> film_moves = {};
-    Inflate inflate = {};  // none: what is packed is not read
+    Inflate inflate = {};    // none: what is packed is not read
+    Progress progress = {};  // of what may take minutes: terrains with a tolerance, one after the other
 };
 
 }  // namespace trilens

@@ -114,7 +114,7 @@ TerrainMesh triangles_of(const Node& node, const TerrainSettings& settings, cons
         if (node.has("region")) read_fields(node["region"], region_fields(), thinning->region.emplace());
     }
     try {
-        return make_terrain(heights, shape, thinning);
+        return make_terrain(heights, shape, thinning, reading.textures.progress);
     } catch (const std::length_error& error) {
         (thinning ? node[limit] : node["heights"])
             .fail(std::string("makes ") + error.what() + ": give a larger " + limit);

@@ -20,6 +20,7 @@ Reading::Reading(const std::string& named, const std::string& paths_start_here, 
     textures.from_memory = pictures.from_memory;
     textures.letters = pictures.letters;
     textures.film_moves = pictures.film_moves;
+    textures.progress = pictures.progress;
     textures.inflate =
         pictures.inflate ? pictures.inflate : [](std::string_view, std::span<char>) { return false; };
     if (pictures.heights_from_file)

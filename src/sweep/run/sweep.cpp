@@ -58,6 +58,7 @@ SweepSummary load_sweep(const std::string& folder, std::map<std::string, RunReco
             summary.runs[i] = is_same ? std::move(known->second) : load_run(folder, plan[i]);
         }
     });
+    summary.other_runs = count_other_runs(folder, plan);
     summary.fits = fit_runs(summary.manifest.axes, summary.runs);
     return summary;
 }

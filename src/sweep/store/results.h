@@ -140,6 +140,8 @@ struct SweepSummary {
     SweepManifest manifest;
     std::vector<RunRecord> runs;
     std::vector<SweepFit> fits;
+    std::size_t other_runs =
+        0;  // finished ones of an earlier plan, which stay in the folder and out of all tables
 
     std::size_t count(RunState state) const {
         std::size_t found = 0;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -25,6 +26,9 @@ constexpr const char* kWhatToDo = "choose another folder, or discard what is the
 
 std::string manifest_file(const std::string& folder) {
     return folder + "/manifest.json";
+}
+std::string plan_file(const std::string& folder) {
+    return folder + "/plan.jsonl";
 }
 /// Held by every process at work in the folder.
 std::string users_lock(const std::string& folder) {
@@ -98,16 +102,35 @@ bool is_same_sweep(const SweepManifest& a, const SweepManifest& b) {
 FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
                       const std::vector<PlannedRun>& plan, const Progress& progress) {
     make_folder(folder);
-    FileLock user = FileLock::wait(users_lock(folder), LockKind::kMany, progress);
     const FileLock planner = FileLock::wait(plan_lock(folder), LockKind::kOne, progress);
+    std::optional<FileLock> user = FileLock::try_lock(users_lock(folder), LockKind::kOne);
+    const bool is_alone = user.has_value();
+    if (!is_alone) user = FileLock::wait(users_lock(folder), LockKind::kMany, progress);
     require_free(folder, manifest);
+    // Whoever is at work sums up the plan that lies in the folder at the end.
+    if (!is_alone && read_whole_file(plan_file(folder)) != plan_text(plan))
+        throw UsageError(folder +
+                         " is being swept with other values, or another state of the scene; wait until that "
+                         "ends, or choose another folder");
     const bool is_new = !can_be_read(manifest_file(folder));
     make_folder(folder + "/truth");
     make_folder(folder + "/runs");
     replace_text_file(manifest_file(folder), manifest_text(manifest, plan));
-    replace_text_file(folder + "/plan.jsonl", plan_text(plan));
+    replace_text_file(plan_file(folder), plan_text(plan));
     if (is_new) begin_report_lists(folder);
-    return user;
+    user->share();
+    return std::move(*user);
+}
+
+std::size_t count_other_runs(const std::string& folder, const std::vector<PlannedRun>& plan) {
+    std::set<std::string> planned;
+    for (const PlannedRun& run : plan) planned.insert(run.id);
+    std::size_t others = 0;
+    std::error_code unreadable;
+    for (fs::directory_iterator entry(folder + "/runs", unreadable), end; !unreadable && entry != end;
+         entry.increment(unreadable))
+        others += !planned.contains(entry->path().filename().string()) && can_be_read(entry->path() / "DONE");
+    return others;
 }
 
 void clear_folder(const std::string& folder) {
@@ -161,6 +184,11 @@ FileLock FileLock::wait(const std::string& file, LockKind kind, const Progress& 
         if (progress.cancelled()) throw Interrupted();
         std::this_thread::sleep_for(pause);
     }
+}
+
+void FileLock::share() {
+    while (flock(descriptor_, LOCK_SH) != 0)
+        if (errno != EINTR) refuse("a lock", errno);
 }
 
 FileLock::~FileLock() {

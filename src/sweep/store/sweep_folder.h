@@ -33,6 +33,9 @@ class FileLock {
     /// Waits for the other holders to end. Throws Interrupted once `progress` says so, and as try_lock does.
     static FileLock wait(const std::string& file, LockKind kind, const Progress& progress);
 
+    /// Lets others of LockKind::kMany in beside the holder. Throws OutputError.
+    void share();
+
     ~FileLock();
     FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
     FileLock& operator=(FileLock&& other) noexcept {
@@ -50,11 +53,15 @@ class FileLock {
 bool is_same_sweep(const SweepManifest& a, const SweepManifest& b);
 
 /// Makes the folder the sweep's and writes its manifest and plan. The lock keeps the folder the sweep's until
-/// it is destroyed; other processes of the same sweep share it. Throws UsageError where it holds another
-/// sweep or a gallery of sweeps, or files of a sweep's names that are none's, InputError where it holds a
-/// manifest that cannot be read, OutputError.
+/// it is destroyed; other processes of the same plan share it. Throws UsageError where it holds another
+/// sweep or a gallery of sweeps, or files of a sweep's names that are none's, or where a process is at another
+/// plan of this sweep; InputError where it holds a manifest that cannot be read, OutputError.
 FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
                       const std::vector<PlannedRun>& plan, const Progress& progress);
+
+/// The finished runs that lie in the folder and are not in the plan, as an earlier one left them: they stay,
+/// and are in no table.
+std::size_t count_other_runs(const std::string& folder, const std::vector<PlannedRun>& plan);
 
 /// Removes all that sweeps write from a sweep's folder, and nothing else, as remove_own_files does; does
 /// nothing to other folders. Throws UsageError while a process is at work in it, OutputError.
