@@ -32,8 +32,8 @@ bool has_all(const std::vector<LightPath>& paths, const std::vector<LightPath>& 
 BeamGrid::BeamGrid(const LightSpace& space, const BeamSource& source, const LightWindow& window, Id first)
     : space_(space), source_(source), window_(window), first_(first) {}
 
-LightPaths BeamGrid::paths_at(const Vec2& place) const {
-    return light_paths(space_, source_, window_.ray(place), first_);
+LightPaths BeamGrid::paths_at(const Vec2& place, std::span<const std::vector<Step>* const> only) const {
+    return light_paths(space_, source_, window_.ray(place), first_, only);
 }
 
 /// Squares of two triangles each, whose common side is the base of both.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -45,8 +46,8 @@ class BeamGrid {
     /// Triangles that were left too coarse, for want of levels or room.
     std::size_t coarse_count() const { return coarse_; }
 
-    /// The paths at any place of the window.
-    LightPaths paths_at(const Vec2& place) const;
+    /// The paths at any place of the window; `only`: as FollowParams has it.
+    LightPaths paths_at(const Vec2& place, std::span<const std::vector<Step>* const> only = {}) const;
 
   private:
     using Edge = std::uint64_t;

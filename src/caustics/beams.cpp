@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "base/util/parallel.h"
@@ -12,31 +13,60 @@ namespace {
 
 constexpr int kBisections = 12;
 
-/// Paths at places on one side of a triangle: where several histories end together they ask for the same.
-using PathsOnSide = std::map<std::pair<double, double>, LightPaths>;
-
 /// The last place at which a history is, on the way between two corners of which one has it.
 struct HistoryBorder {
     Id inside = kNone, outside = kNone;
     const LightPath* like = nullptr;
     Vec2 place{0};
     LightPath path;
+};
 
-    void find(const BeamGrid& grid, PathsOnSide& known, const LoopProgress& progress) {
-        Vec2 low = grid.place(inside), high = grid.place(outside);
-        place = low;
-        path = *like;
-        for (int i = 0; i < kBisections; ++i) {
-            progress.stop_if_cancelled();
-            const Vec2 middle = 0.5 * (low + high);
-            const auto [at, is_new] = known.try_emplace({middle.x, middle.y});
-            if (is_new) at->second = grid.paths_at(middle);
-            const LightPath* same = find_history(at->second.paths, *like);
-            (same ? low : high) = middle;
-            if (same) place = middle, path = *same;
+/// Borders of one side that bisection has not told apart yet.
+struct BorderSearch {
+    std::vector<HistoryBorder*> borders;
+    Vec2 low{0}, high{0};  // where the histories are, and are not
+    int bisections = 0;
+
+    /// What becomes of it at the middle: of those that are there, and those that are not.
+    std::array<BorderSearch, 2> bisect(const BeamGrid& grid) const {
+        std::vector<const std::vector<Step>*> only;
+        for (const HistoryBorder* border : borders) only.push_back(&border->like->steps);
+        const Vec2 middle = 0.5 * (low + high);
+        const LightPaths found = grid.paths_at(middle, only);
+        std::array<BorderSearch, 2> parts{BorderSearch{{}, middle, high, bisections + 1},
+                                          BorderSearch{{}, low, middle, bisections + 1}};
+        for (HistoryBorder* border : borders) {
+            const LightPath* same = find_history(found.paths, *border->like);
+            if (same) border->place = middle, border->path = *same;
+            parts[same ? 0 : 1].borders.push_back(border);
         }
+        return parts;
     }
 };
+
+/// Of all borders of one side. Where several histories end together they are followed together.
+void find_on_side(const BeamGrid& grid, std::span<HistoryBorder* const> borders,
+                  const LoopProgress& progress) {
+    std::vector<BorderSearch> searches;
+    for (HistoryBorder* border : borders) {
+        border->place = grid.place(border->inside);
+        border->path = *border->like;
+        const auto same = std::find_if(searches.begin(), searches.end(), [&](const BorderSearch& one) {
+            return one.borders[0]->inside == border->inside && one.borders.size() < FollowParams::kMostOnly;
+        });
+        if (same != searches.end())
+            same->borders.push_back(border);
+        else
+            searches.push_back({{border}, grid.place(border->inside), grid.place(border->outside), 0});
+    }
+    while (!searches.empty()) {
+        progress.stop_if_cancelled();
+        const BorderSearch search = std::move(searches.back());
+        searches.pop_back();
+        for (BorderSearch& part : search.bisect(grid))
+            if (!part.borders.empty() && part.bisections < kBisections) searches.push_back(std::move(part));
+    }
+}
 
 /// A beam's part of the film times the mean of of(end) over its ends.
 template <typename Of>
@@ -115,17 +145,14 @@ void BeamMaker::find_borders(const Progress& progress) {
                 if (!border_.try_emplace({inside, outside, history}, borders_.size()).second) continue;
                 borders_.push_back({inside, outside, one ? one : other, {}, {}});
             }
-    std::map<std::pair<Id, Id>, std::vector<std::size_t>> by_side;
-    for (std::size_t i = 0; i < borders_.size(); ++i)
-        by_side[std::minmax(borders_[i].inside, borders_[i].outside)].push_back(i);
-    std::vector<const std::vector<std::size_t>*> sides;
+    std::map<std::pair<Id, Id>, std::vector<HistoryBorder*>> by_side;
+    for (HistoryBorder& border : borders_)
+        by_side[std::minmax(border.inside, border.outside)].push_back(&border);
+    std::vector<const std::vector<HistoryBorder*>*> sides;
     for (const auto& [side, borders] : by_side) sides.push_back(&borders);
     LoopProgress done(progress, static_cast<double>(sides.size()));
     parallel_for(sides.size(), 4, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i) {
-            PathsOnSide known;
-            for (const std::size_t border : *sides[i]) borders_[border].find(grid_, known, done);
-        }
+        for (std::size_t i = from; i < to; ++i) find_on_side(grid_, *sides[i], done);
         done.add(static_cast<double>(to - from));
     });
 }

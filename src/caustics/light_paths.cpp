@@ -56,7 +56,8 @@ LightPath continued(LightHistory so_far, const PathSegment& segment, const Vec3&
 
 }  // namespace
 
-LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first) {
+LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first,
+                       std::span<const std::vector<Step>* const> only) {
     LightPaths found;
     const PathWorld& world = *space.optics;
     const Media around = space.around ? space.around(ray) : Media{};
@@ -67,6 +68,7 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     FollowParams params;
     params.objects = space.objects;
     params.least_weight = kLeastLight;
+    params.only = only;
     FollowedPaths followed = follow_paths(world, {met->meeting, met->distance, around}, params);
     found.cut = followed.cut;
     const std::vector<Branch> ways = branches(world, met->meeting, around, kAllColours);

@@ -63,8 +63,10 @@ struct LightPaths {
     CutPaths cut;                  // what was left out, as shares of the ray's light
 };
 
-/// All paths of the light's ray whose first optic is `first`. Opaque objects end them.
-LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first);
+/// All paths of the light's ray whose first optic is `first`. Opaque objects end them. `only`: as
+/// FollowParams has it.
+LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first,
+                       std::span<const std::vector<Step>* const> only = {});
 
 /// One path of the light's ray, followed by itself.
 struct SinglePath {

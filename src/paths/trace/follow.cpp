@@ -54,6 +54,7 @@ struct Pending {
     bool front = true;
     Vec3 first_weight{1}, weight{1};
     double lobe = 0;
+    std::uint64_t only = ~std::uint64_t{0};  // of FollowParams::only, whose way it goes; a bit each
 };
 
 class Follower {
@@ -70,6 +71,9 @@ class Follower {
         return params_.rough ? with_microfacet(world_, at, params_.rough->place(before)) : at;
     }
 
+    /// Of those of `among` the ones that have the step after `before` others.
+    std::uint64_t that_go(const Step& step, std::size_t before, std::uint64_t among) const;
+
     const PathWorld& world_;
     const FollowParams& params_;
     FollowedPaths followed_;
@@ -77,6 +81,17 @@ class Follower {
     LegBefore camera_leg_;
     std::array<Vec3, 2> faint_behind_{Vec3(0), Vec3(0)};  // of paths that reflect first, and refract
 };
+
+std::uint64_t Follower::that_go(const Step& step, std::size_t before, std::uint64_t among) const {
+    if (params_.only.empty()) return among;
+    std::uint64_t go = 0;
+    for (std::size_t i = 0; i < params_.only.size(); ++i) {
+        const std::vector<Step>& steps = *params_.only[i];
+        const std::uint64_t bit = std::uint64_t{1} << i;
+        if ((among & bit) && before < steps.size() && steps[before] == step) go |= bit;
+    }
+    return go;
+}
 
 void Follower::start(const PathStart& from) {
     const Meeting first = turned(from.first, 0);
@@ -87,6 +102,8 @@ void Follower::start(const PathStart& from) {
         if (!(reflects ? world_.reflect : world_.refract)) continue;
         Pending pending;
         pending.branch = *way_on;
+        pending.only = that_go(way_on->step, 0, pending.only);
+        if (pending.only == 0) continue;
         pending.path = reflects ? Path::kReflect : Path::kRefract;
         pending.principal = reflects || way_on->principal;
         pending.point = first.point;
@@ -107,7 +124,10 @@ void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
     const PathSegment& parent = followed_.segments[segment];
     const Vec3 arrived = from.weight * body_transmittance(world_, parent.medium, next.distance);
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
+        const std::uint64_t only = that_go(way_on->step, from.steps, from.only);
+        if (only == 0) continue;
         Pending pending = from;
+        pending.only = only;
         pending.branch = *way_on;
         pending.parent = segment;
         pending.principal = from.principal && way_on->principal;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "paths/trace/path_world.h"
@@ -68,6 +69,10 @@ struct FollowParams {
     const Tracer* objects = nullptr;     // what blocks the way; null: nothing does
     double least_weight = kLeastWeight;  // the principal paths are followed whatever they carry
     const RoughWay* rough = nullptr;     // how rough optics turn the rays; null: as smooth ones do
+    // Only paths that go the way of one of these are followed, each to its end: at most kMostOnly. Empty:
+    // all.
+    std::span<const std::vector<Step>* const> only = {};
+    static constexpr std::size_t kMostOnly = 64;
 };
 
 struct FollowedPaths {
