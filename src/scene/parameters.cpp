@@ -101,6 +101,8 @@ std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::s
         if (value.is_null()) value = default_of(pointer);
         if (value.is_null())
             fail_at(file, asked, "is not in the scene: derivatives are of numbers that it has");
+        if (pointer.starts_with("/film/"))
+            fail_at(file, asked, "is no number of a camera, a mesh or a material, on which images depend");
         add_numbers(value, pointer, file, numbers);
     }
     return numbers;

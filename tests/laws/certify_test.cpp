@@ -211,6 +211,11 @@ TEST_CASE("what is not proven is traced: normals of a map, and whatever is off b
     const auto mirror = shipped_world("sphere", 8, 160, 120);
     const Picture strict = draw(*mirror, certified(1e-3));
     CHECK(strict.statistics.traced_pixels > 0);
+    PictureRequest exact;
+    exact.engine = Engine::kLimitTruth;
+    const Picture truth = draw(*mirror, exact);
+    CHECK(truth.statistics.optic_pixels > 0);
+    CHECK(truth.statistics.traced_pixels == truth.statistics.optic_pixels);
     CHECK(strict.statistics.certified_error <= 1e-3);
 }
 

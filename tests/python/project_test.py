@@ -140,6 +140,11 @@ def test_bounds_of_images_and_weight():
         np.testing.assert_allclose(np.sort(few["weight"][few["point"] == p].sum(axis=1)), strongest, rtol=1e-12)
     strong = renderer.project(points, min_weight=0.5)
     assert len(strong) == (every["weight"].max(axis=1) >= 0.5).sum()
+    for least in (float("nan"), -1.0):
+        with pytest.raises(trilens.UsageError, match="at least 0"):
+            renderer.project(points, min_weight=least)
+    with pytest.raises(trilens.InputError, match="/film/width: is no number of a camera"):
+        renderer.project(points, derivatives=["/film/width"])
 
 
 @pytest.mark.parametrize("change", [None, cage, mirror_and_lens])

@@ -318,6 +318,8 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
         tell_crowded_out(picture.statistics, warn);
         tell_marks(world, marks, warn);
     }
+    if (request.engine.engine == Engine::kLimitTruth)
+        picture.statistics.traced_pixels = picture.statistics.optic_pixels;
     return picture;
 }
 

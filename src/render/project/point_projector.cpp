@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/math/box.h"
+#include "base/util/error.h"
 #include "reflect/reflection.h"
 #include "render/project/image_light.h"
 
@@ -41,6 +42,7 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
       request_(request),
       frame_(make_frame(world, frame_of_seeds(request), {})),
       sight_(world, frame_, request.refine) {
+    if (!(request.min_weight >= 0)) throw UsageError("the least weight of an image is a number of at least 0");
     object_tracer(world);
     Box box;
     const std::optional<Ray> middle = exact_ray(camera_, 0.5 * Vec2(camera_.film.width, camera_.film.height));

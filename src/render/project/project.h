@@ -80,7 +80,7 @@ struct ProjectRequest {
     std::vector<std::string> parameters = {};
     // Of a point: the strongest; 0: all. Of a list that was cut `complete` is false.
     std::size_t max_images = 0;
-    double min_weight = 0;  // images that carry less in every colour are left out
+    double min_weight = 0;  // at least 0; images that carry less in every colour are left out
 
     bool operator==(const ProjectRequest&) const = default;
 };
