@@ -47,7 +47,7 @@ Scene load(const std::filesystem::path& file, const py::dict& overrides, int res
            const ImportOptions& import, const py::object& warn) {
     PythonCall call(py::none(), warn);
     const SceneRequest request{file.string(), overrides_of(overrides), resolution, import,
-                               call.progress("reading " + file.string())};
+                               call.progress("reading the scene")};
     Scene scene = call.run([&] { return load_scene(request); });
     tell_warnings(scene, call);
     return scene;

@@ -215,7 +215,7 @@ Scene load_scene(const SceneOptions& options, Console& console) {
     console.files().reads({options.scene});
     const Stopwatch watch;
     SceneRequest request = scene_request(options);
-    request.progress = console.progress("reading " + options.scene);
+    request.progress = console.progress("reading the scene");
     stop_at_once(true);  // nothing is written yet
     Scene scene = is_standard_stream(options.scene) ? read_standard_input(request) : load_scene(request);
     for (const auto& [optic, n] : resolutions_of(options.resolution).of_optic)

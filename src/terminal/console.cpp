@@ -169,9 +169,12 @@ void Console::draw(const std::string& job, double done) {
                                : "",
                       text = stage_.empty() ? job : job + ": " + stage_;
     if (options_.progress == ProgressStyle::kJson) {
-        const std::string stage = stage_.empty() ? "" : fmt::format("\"stage\":\"{}\",", stage_);
-        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",%s\"done\":%.3f,\"eta_s\":%s}\n", elapsed,
-                     job.c_str(), stage.c_str(), done,
+        const auto quoted = [](const std::string& words) {
+            return Json(words).dump(-1, ' ', false, Json::error_handler_t::replace);
+        };
+        const std::string stage = stage_.empty() ? "" : "\"stage\":" + quoted(stage_) + ",";
+        std::fprintf(stderr, "{\"t\":%.1f,\"job\":%s,%s\"done\":%.3f,\"eta_s\":%s}\n", elapsed,
+                     quoted(job).c_str(), stage.c_str(), done,
                      left && stage_.empty() ? fmt::format("{:.1f}", *left).c_str() : "null");
     } else if (options_.progress == ProgressStyle::kPlain) {
         std::fprintf(stderr, "trilens: %s %d %%%s\n", text.c_str(), percent, seconds.c_str());
