@@ -63,17 +63,17 @@ class Baker {
     Bake bake() {
         check();
         divide();
-        const DirectLight direct(world_, part(0, kLightsShare));
+        const DirectLight direct(world_, progress_.part(0, kLightsShare));
         progress_.begin_stage("");
         const std::shared_ptr<const TriangleScene> triangles = mesh_.triangles();
         const FormFactors factors(triangles, params_of(request_.form_factors));
         const PatchPass patches = solve(direct, *triangles, factors);
         VertexLight light(mesh_, direct, {factors, patches.solution.radiosity});
-        light.update(part(kSolvingShare, 0.5 * (1 - kSolvingShare)));
+        light.update(progress_.part(kSolvingShare, 0.5 * (1 - kSolvingShare)));
         double done = 0.5 * (1 + kSolvingShare);
         while (report_.passes < kMostPasses && halve(patches, light)) {
             ++report_.passes;
-            light.update(part(done, 0.5 * (1 - done)));
+            light.update(progress_.part(done, 0.5 * (1 - done)));
             done = 0.5 * (1 + done);
         }
         report_.coarse = count_of(too_coarse(patches, light, false));
@@ -104,8 +104,6 @@ class Baker {
     FormFactorParams params_of(FormFactorMethod method) const {
         return {method, request_.hemicube_resolution, 1, request_.rays, length_of(kShadowOffset)};
     }
-    /// Of the whole bake's progress the part of this length from there on.
-    Progress part(double from, double length) const { return progress_.part(from, length); }
 
     const World& world_;
     const BakeRequest& request_;
@@ -196,13 +194,14 @@ PatchPass Baker::solve(const DirectLight& direct, const TriangleScene& triangles
                 side, [&](std::size_t i) { return factors.row(static_cast<Id>(i)); },
                 [](const FormFactorRow& made) { return made; });
         };
-        patches.solution = shoot(problem, row, params, part(kLightsShare, kSolvingShare - kLightsShare));
+        patches.solution =
+            shoot(problem, row, params, progress_.part(kLightsShare, kSolvingShare - kLightsShare));
     } else {
         check_matrix_memory(factors.side_count());
         const FormFactorMatrix matrix =
-            make_matrix(factors, part(kLightsShare, kSolvingShare - kLightsShare));
+            make_matrix(factors, progress_.part(kLightsShare, kSolvingShare - kLightsShare));
         patches.solution =
-            gather(problem, made_reciprocal(matrix, patches.area), params, part(kSolvingShare, 0));
+            gather(problem, made_reciprocal(matrix, patches.area), params, progress_.part(kSolvingShare, 0));
     }
     return patches;
 }

@@ -167,7 +167,7 @@ FormFactorMatrix make_matrix(const FormFactors& factors, const Progress& progres
     FormFactorMatrix matrix;
     matrix.rows.resize(factors.side_count());
     for (std::size_t first = 0; first < matrix.rows.size(); first += kBatch) {
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         progress(static_cast<double>(first) / static_cast<double>(matrix.rows.size()));
         parallel_for(std::min(kBatch, matrix.rows.size() - first), 1, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i)

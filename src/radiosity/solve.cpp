@@ -75,7 +75,7 @@ RadiositySolution shoot(const RadiosityProblem& problem, const RowSource& rows, 
         const double left = share_of(solution.unshot, whole);
         solution.steps.push_back({shots, left});
         solution.converged = left <= params.tolerance;
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         progress(way_done(left, params.tolerance));
         if (solution.converged || shots >= params.most_steps) return solution;
         const std::vector<Id> shooters = brightest(problem, unshot);
@@ -113,7 +113,7 @@ RadiositySolution gather(const RadiosityProblem& problem, const FormFactorMatrix
     solution.steps.push_back({0, 1});
     std::vector<Vec3> moved(problem.area.size());
     for (std::size_t sweep = 0; sweep < params.most_steps && !solution.converged; ++sweep) {
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         for (std::size_t i = 0; i < problem.area.size(); ++i) {
             const FormFactorRow& row = matrix.rows[i];
             Vec3 arriving(0);

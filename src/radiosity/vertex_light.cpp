@@ -105,7 +105,7 @@ void VertexLight::update(const Progress& progress) {
         }
     light_.resize(vertices_.size());
     for (std::size_t first = before; first < vertices_.size(); first += kVerticesAtOnce) {
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         progress(static_cast<double>(first - before) / static_cast<double>(vertices_.size() - before));
         const std::size_t count = std::min(kVerticesAtOnce, vertices_.size() - first);
         parallel_for(count, 1, [&](std::size_t from, std::size_t to) {

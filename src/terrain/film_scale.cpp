@@ -138,7 +138,7 @@ class FilmScale::Refinement {
         std::vector<FilmMove> answers;
         Portions portions(kFewestAtOnce, kMostAtOnce);
         while (answers.size() < queries.size()) {
-            if (progress_.cancelled()) throw Interrupted();
+            progress_.stop_if_cancelled();
             const std::vector<FilmMove> some =
                 moves(queries.subspan(answers.size(), portions.next(queries.size() - answers.size())));
             answers.insert(answers.end(), some.begin(), some.end());

@@ -115,10 +115,6 @@ std::string reason(int error_number) {
     return std::generic_category().message(error_number);
 }
 
-}  // namespace
-
-namespace {
-
 /// The names of files that are being written, where a signal's handler can read them.
 class UnfinishedFiles {
   public:

@@ -254,7 +254,7 @@ Design design_mirror(const DesignWish& wish, const DesignRequest& request, const
     const auto iterate = [&](auto step, int most) {
         design.converged = false;
         for (int k = 0; k < most && !design.converged; ++k) {
-            if (progress.cancelled()) throw Interrupted();
+            progress.stop_if_cancelled();
             design.converged = step(wish, rays, samples, design.surface) < rest;
             ++design.iterations;
         }

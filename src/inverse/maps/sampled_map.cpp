@@ -134,7 +134,7 @@ SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, c
                 if (high) finer.push_back({cell.x0, my, wide ? mx : cell.x1, cell.y1});
                 if (wide && high) finer.push_back({mx, my, cell.x1, cell.y1});
             }
-            if (progress.cancelled()) throw Interrupted();
+            progress.stop_if_cancelled();
             progress(std::min(1.0, settled_pixels / (double(width) * height)));
         }
         cells = std::move(finer);

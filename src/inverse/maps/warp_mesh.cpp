@@ -20,8 +20,7 @@ namespace {
 constexpr double kJustInside = 1 - 1e-9;
 /// Cells whose errors are measured: of more every second, third... is.
 constexpr std::size_t kMostMeasured = 50'000;
-/// Places found between two looks at the progress.
-constexpr std::size_t kFoundAtOnce = 1 << 13;
+constexpr std::size_t kFewestAtOnce = 64, kMostAtOnce = 1 << 13;  // places between two reports
 /// Of a fisheye's mesh, so that its cells are about square a third of the way out.
 constexpr double kRingsPerRay = 0.5;
 /// So many times the columns in a step, at most.
@@ -90,9 +89,10 @@ struct MeshMaker {
         std::vector<MapImages> found(places.size());
         FilmTargetsParams asked = to_target;
         asked.with_jacobians = with_jacobians;
-        for (std::size_t first = 0; first < places.size(); first += kFoundAtOnce) {
-            if (progress.cancelled()) throw Interrupted();
-            const std::size_t count = std::min(kFoundAtOnce, places.size() - first);
+        Portions portions(kFewestAtOnce, kMostAtOnce);
+        for (std::size_t first = 0, count = 0; first < places.size(); first += count) {
+            progress.stop_if_cancelled();
+            count = portions.next(places.size() - first);
             const std::span<const Vec2> some = std::span(places).subspan(first, count);
             const std::span<MapImages> here = std::span(found).subspan(first, count);
             if (is_on_film())

@@ -11,7 +11,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kFewestAtOnce = 64, kMostAtOnce = 1u << 16;  // places whose images are held whole
+constexpr std::size_t kPointsAtOnce = 1u << 16;  // whose images are held whole
 /// The square of half a pixel: no ellipse is narrower, and where it would be it is that much fainter.
 constexpr double kLeastSquare = 0.25;
 
@@ -84,7 +84,8 @@ class Placing {
     Placing(const World& world, const FrameParams& frame)
         : world_(world), projector_(world, request_of(world, frame)) {}
 
-    void add(const Entry& entry, std::span<const Vec3> places, std::span<const Vec3> colors);
+    void add(const Entry& entry, std::span<const Vec3> places, std::span<const Vec3> colors,
+             const Progress& progress);
     PlacedMarks take();
 
   private:
@@ -135,10 +136,11 @@ bool Placing::add_image(const Entry& entry, const WorldImage& image, const Vec3&
     return true;
 }
 
-void Placing::add(const Entry& entry, std::span<const Vec3> places, std::span<const Vec3> colors) {
+void Placing::add(const Entry& entry, std::span<const Vec3> places, std::span<const Vec3> colors,
+                  const Progress& progress) {
     std::vector<ProjectedPoint> asked;
     for (const Vec3& place : places) asked.push_back({place});
-    const std::vector<PointProjection> found = project_each(projector_, asked);
+    const std::vector<PointProjection> found = project_each(projector_, asked, progress);
     for (std::size_t p = 0; p < places.size(); ++p) {
         bool is_seen = false;
         for (const WorldImage& image : found[p].images)
@@ -161,25 +163,24 @@ PlacedMarks Placing::take() {
 PlacedMarks place_marks(const World& world, const FrameParams& frame, const Progress& progress) {
     if (world.scene.points.empty() && world.scene.labels.empty()) return {};
     Placing placing(world, frame);
-    std::size_t done = 0, all = 0;
-    Portions portions(kFewestAtOnce, kMostAtOnce);
-    for (const PointCloud& cloud : world.scene.points) all += cloud.places.size();
+    double done = 0, all = 0;
+    for (const PointCloud& cloud : world.scene.points) all += static_cast<double>(cloud.places.size());
     for (std::size_t i = 0; i < world.scene.points.size(); ++i) {
         const PointCloud& cloud = world.scene.points[i];
         const Entry entry{false, i, cloud.radius, cloud.size, cloud.min_weight};
-        for (std::size_t from = 0, count = 0; from < cloud.places.size(); from += count) {
-            if (progress.cancelled()) throw Interrupted();
-            count = portions.next(cloud.places.size() - from);
+        for (std::size_t from = 0; from < cloud.places.size(); from += kPointsAtOnce) {
+            const std::size_t count = std::min(kPointsAtOnce, cloud.places.size() - from);
             placing.add(entry, std::span(cloud.places).subspan(from, count),
                         cloud.colors.empty() ? std::span(&cloud.color, 1)
-                                             : std::span(cloud.colors).subspan(from, count));
-            progress(static_cast<double>(done += count) / static_cast<double>(all));
+                                             : std::span(cloud.colors).subspan(from, count),
+                        progress.part(done / all, static_cast<double>(count) / all));
+            done += static_cast<double>(count);
         }
     }
     for (std::size_t i = 0; i < world.scene.labels.size(); ++i) {
         const Label& label = world.scene.labels[i];
         placing.add({true, i, 0, label.dot, label.min_weight}, std::span(&label.place, 1),
-                    std::span(&label.color, 1));
+                    std::span(&label.color, 1), {nullptr, progress.cancel});
     }
     PlacedMarks placed = placing.take();
     leave_out_crowded(world, placed);

@@ -68,7 +68,7 @@ class FilteredSamples {
             static_cast<double>(window.pixels()) / static_cast<double>(grid_.size());
         const RayDifferentials differentials(world, viewer, grid_, progress.cancel);
         parallel_for(colours_.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
-            if (source.progress.cancelled()) throw Interrupted();
+            source.progress.stop_if_cancelled();
             sample_colours(source.world, views, from, std::span(colours_).subspan(from, to - from),
                            grid_.side == 1 || gathers_light(source.world) ? &differentials : nullptr);
             for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
@@ -295,7 +295,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
         LayerStatistics own;
         std::array<SampleColour, kPixelsPerTask> colours;
         for (std::size_t start = from; start < to; start += kPixelsPerTask) {
-            if (source.pixels.progress.cancelled()) throw Interrupted();
+            source.pixels.progress.stop_if_cancelled();
             const std::size_t end = std::min(to, start + kPixelsPerTask);
             const std::span<SampleColour> here = std::span(colours).first(end - start);
             find_colours(source, band, start, here);
@@ -348,7 +348,7 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         const int y = request.y0 + static_cast<int>(item) * rows;
         band[slot].grid = {request.x0, y, request.x1, std::min(y + rows, request.y1), side};
         view_band(source, band[slot]);

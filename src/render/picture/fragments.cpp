@@ -220,7 +220,7 @@ void FragmentColours::shade_centres() {
             shown.push_back({&centres_.samples[p], pixel_corner(p), {}});
             of.push_back(first_[p]);
         }
-        if (progress_.cancelled()) throw Interrupted();
+        progress_.stop_if_cancelled();
         std::vector<ShadedFragment> shaded(shown.size());
         shade_fragments({world_, viewer_, centres_, grid_.side, progress_.cancel}, shown, shaded);
         for (std::size_t k = 0; k < of.size(); ++k) shaded_[of[k]] = shaded[k];
@@ -258,7 +258,7 @@ void FragmentColours::shade_samples() {
             for (std::size_t k = from; k < to; ++k)
                 shown.push_back(
                     {&views.samples[k], pixel_corner(now[k].pixel), members_of(fragments_[now[k].fragment])});
-            if (progress_.cancelled()) throw Interrupted();
+            progress_.stop_if_cancelled();
             std::vector<ShadedFragment> shaded(shown.size());
             shade_fragments({world_, viewer_, views, grid_.side, progress_.cancel}, shown, shaded);
             for (std::size_t k = from; k < to; ++k) shaded_[now[k].fragment] = shaded[k - from];

@@ -36,6 +36,10 @@ Box box_of(const World& world, const std::vector<std::vector<Vec3>>& outlines) {
     return box;
 }
 
+std::string count_text(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace
 
 namespace {
@@ -134,14 +138,6 @@ std::vector<BeamSource> sources_of(const Light&, const Background&, const Ambien
 std::vector<BeamSource> beam_sources(const Light& light, const Background& background) {
     return std::visit([&](const auto& kind) { return sources_of(light, background, kind); }, light.kind);
 }
-
-namespace {
-
-std::string count_text(std::size_t count, const std::string& what) {
-    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 bool has_caustics(const World& world) {
     return std::any_of(world.scene.lights.begin(), world.scene.lights.end(), has_followed_light);

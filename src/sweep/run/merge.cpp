@@ -107,7 +107,7 @@ std::size_t merge_folders(const std::vector<std::string>& folders, const std::st
     const FileLock user = claim_folder(folder, manifest, plan, progress);
     std::size_t copied = 0, done = 0;
     for (const PlannedRun& run : plan) {
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         RunState state = RunState::kMissing;
         const FileLock lock = FileLock::wait(run_lock(folder, run), LockKind::kOne, progress);
         const Part* const best =

@@ -251,7 +251,7 @@ MemoryGate::Visit MemoryGate::enter(double bytes, const Progress& progress) {
     std::unique_lock guard(mutex_);
     while (visitors_ > 0 && limit_ > 0 && inside_ + bytes > limit_) {
         left_.wait_for(guard, std::chrono::milliseconds(100));
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
     }
     inside_ += bytes;
     ++visitors_;

@@ -181,7 +181,7 @@ std::optional<FileLock> FileLock::try_lock(const std::string& file, LockKind kin
 FileLock FileLock::wait(const std::string& file, LockKind kind, const Progress& progress) {
     for (auto pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
         if (std::optional<FileLock> lock = try_lock(file, kind)) return std::move(*lock);
-        if (progress.cancelled()) throw Interrupted();
+        progress.stop_if_cancelled();
         std::this_thread::sleep_for(pause);
     }
 }
