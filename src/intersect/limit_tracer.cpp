@@ -146,8 +146,18 @@ struct LimitTracer::Data {
         const Ray& ray;
         const RayFrame& frame;
         double t_min = 0, t_max = kUnbounded;
+
+        RayStretch stretch() const {
+            return {frame.origin, frame.z, t_min * frame.speed, t_max * frame.speed};
+        }
+        /// Whether the candidate's patch is surely met on the way.
+        bool surely_meets(const Candidate& one) const {
+            return one.is_met && one.t_near > t_min && one.t_far < t_max;
+        }
     };
     Candidates candidates(const Query& query, Reach reach) const;
+    bool surely_meets_near(const Query& query, Id& patch) const;
+    bool meets(const Query& query, Id& blocker) const;
     template <typename Use>
     void for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate, Use&& use) const;
 };
@@ -190,14 +200,13 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
     const auto look_at = [&](const RayPatch& patch, Id number) {
         const auto one = candidate(query.frame, patch, query.t_min);
         if (!one || one->t_near > complete_to) return;
-        if (reach == Reach::kAnyBefore && one->is_met && one->t_near > query.t_min &&
-            one->t_far < query.t_max) {
-            found.assign(1, *one);
+        found.push_back(*one);
+        found.back().patch = number;
+        if (reach == Reach::kAnyBefore && query.surely_meets(*one)) {
+            found.assign(1, found.back());
             complete_to = -kUnbounded;
             return;
         }
-        found.push_back(*one);
-        found.back().patch = number;
         if (reach == Reach::kToFirst && one->is_crossed && one->t_near > query.t_min)
             complete_to = std::min(complete_to, one->t_far);
     };
@@ -206,7 +215,8 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
             look_at(patches[box], box);
         } else {
             const PartPatches::Part& part = by_part->of(box);
-            for (std::uint64_t left = part.may_meet(query.frame); left != 0; left &= left - 1) {
+            for (std::uint64_t left = balls_met(part.balls, query.stretch());
+                 left != 0 && complete_to != -kUnbounded; left &= left - 1) {
                 const auto i = static_cast<std::size_t>(std::countr_zero(left));
                 look_at(part.patches[i], PartPatches::number(box, i));
             }
@@ -220,6 +230,23 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
         return a.t_near != b.t_near ? a.t_near < b.t_near : a.patch < b.patch;
     });
     return candidates;
+}
+
+// Whether the ray surely meets `patch`, or one of the same part, which it then becomes.
+bool LimitTracer::Data::surely_meets_near(const Query& query, Id& patch) const {
+    const auto surely_meets = [&](Id number) {
+        const auto one = candidate(query.frame, this->patch(number), query.t_min);
+        if (one && query.surely_meets(*one)) patch = number;
+        return one && query.surely_meets(*one);
+    };
+    if (surely_meets(patch)) return true;
+    if (!by_part) return false;
+    const Id part = PartPatches::part_of(patch);
+    for (std::uint64_t left = balls_met(by_part->of(part).balls, query.stretch()); left != 0;
+         left &= left - 1)
+        if (surely_meets(PartPatches::number(part, static_cast<std::size_t>(std::countr_zero(left)))))
+            return true;
+    return false;
 }
 
 // Calls use(hit) for the hits that Newton's method reaches in the candidate's patch, with any t, some perhaps
@@ -284,25 +311,42 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
     return first;
 }
 
-bool LimitTracer::meets(const Ray& ray, double t_min, double t_max) const {
-    if (data_->surface.has_closed_form()) return data_->surface.meets(ray, t_min, t_max);
-    const std::optional<RayFrame> frame = make_ray_frame(ray);
-    if (!frame) return false;
-    const Candidates candidates = data_->candidates({ray, *frame, t_min, t_max}, Reach::kAnyBefore);
-    if (candidates.complete_to == -kUnbounded) return true;
+// `blocker`: a patch that the ray before this one met, which is asked first, or kNone.
+bool LimitTracer::Data::meets(const Query& query, Id& blocker) const {
+    if (blocker != kNone && surely_meets_near(query, blocker)) return true;
+    const Candidates candidates = this->candidates(query, Reach::kAnyBefore);
+    if (candidates.complete_to == -kUnbounded) {
+        blocker = candidates.found[0].patch;
+        return true;
+    }
     bool met = false;
     for (const Candidate& candidate : candidates.found) {
-        data_->for_each_hit(ray, *frame, candidate,
-                            [&](const SurfaceHit& hit) { met = met || (hit.t > t_min && hit.t < t_max); });
+        for_each_hit(query.ray, query.frame, candidate, [&](const SurfaceHit& hit) {
+            met = met || (hit.t > query.t_min && hit.t < query.t_max);
+        });
         if (met) break;
     }
     return met;
 }
 
+bool LimitTracer::meets(const Ray& ray, double t_min, double t_max) const {
+    if (data_->surface.has_closed_form()) return data_->surface.meets(ray, t_min, t_max);
+    const std::optional<RayFrame> frame = make_ray_frame(ray);
+    Id blocker = kNone;
+    return frame && data_->meets({ray, *frame, t_min, t_max}, blocker);
+}
+
 Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits asked) const {
     Segments::Bits found = 0;
+    Id blocker = kNone;
     for_each_of(may_meet(segments, data_->around) & asked, [&](std::size_t i) {
-        if (meets(segments.ray(i), 0, 1)) found |= Segments::bit(i);
+        const Ray ray = segments.ray(i);
+        bool is_met = false;
+        if (data_->surface.has_closed_form())
+            is_met = data_->surface.meets(ray, 0, 1);
+        else if (const std::optional<RayFrame> frame = make_ray_frame(ray))
+            is_met = data_->meets({ray, *frame, 0, 1}, blocker);
+        if (is_met) found |= Segments::bit(i);
     });
     return found;
 }

@@ -1,4 +1,5 @@
 #include "intersect/box_tree.h"
+#include "intersect/ray_patches.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "intersect/local_segments.cpp"
@@ -90,6 +91,23 @@ Segments::Bits may_meet_here(const Segments& segments, const Box& box) {
     return ~apart;
 }
 
+std::uint64_t balls_met_here(const PatchBalls& balls, const RayStretch& ray) {
+    static_assert(PatchBalls::kMost % kWidth == 0);
+    const Vector origin = vector(ray.origin), direction = vector(ray.direction);
+    const Number from = number(ray.from), to = number(ray.to);
+    std::uint64_t met = 0;
+    for (std::size_t first = 0; first < balls.count; first += kWidth) {
+        const Vector middle =
+            vector_at(balls.middle[0] + first, balls.middle[1] + first, balls.middle[2] + first);
+        const Vector off = minus(middle, origin);
+        const Number nearest = hn::Min(hn::Max(dot(off, direction), from), to);
+        const Vector away = minus(off, times(nearest, direction));
+        const Truth is_met = hn::Le(dot(away, away), hn::Load(kTag, balls.square + first));
+        met |= std::uint64_t{bits_of(is_met)} << first;
+    }
+    return met;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace trilens::segment_lanes
 HWY_AFTER_NAMESPACE();
@@ -99,6 +117,7 @@ namespace trilens {
 namespace segment_lanes {
 HWY_EXPORT(make_local_here);
 HWY_EXPORT(may_meet_here);
+HWY_EXPORT(balls_met_here);
 }  // namespace segment_lanes
 
 LocalSegments make_local_segments(const Segments& segments, const Vec3& centre, double scale) {
@@ -113,6 +132,11 @@ LocalSegments make_local_segments(const Segments& segments, const Vec3& centre, 
 Segments::Bits may_meet(const Segments& segments, const Box& box) {
     using namespace segment_lanes;
     return HWY_DYNAMIC_DISPATCH(may_meet_here)(segments, box) & segments.all();
+}
+
+std::uint64_t balls_met(const PatchBalls& balls, const RayStretch& ray) {
+    using namespace segment_lanes;
+    return HWY_DYNAMIC_DISPATCH(balls_met_here)(balls, ray);
 }
 
 }  // namespace trilens

@@ -62,12 +62,9 @@ const PartPatches::Part& PartPatches::make(Id part) const {
     auto made = std::make_unique<Part>();
     const std::size_t count = grid.facets.size();
     made->patches.reserve(count);
-    made->balls.resize(4 * count);
     for (std::size_t f = 0; f < count; ++f) {
         made->patches.push_back(make_ray_patch(surface_, grid, f));
-        const PointBall ball = ball_of(made->patches.back());
-        for (int k = 0; k < 3; ++k) made->balls[static_cast<std::size_t>(k) * count + f] = ball.middle[k];
-        made->balls[3 * count + f] = ball.radius * ball.radius;
+        made->balls.add(ball_of(made->patches.back()));
     }
     // Another thread may have made the same meanwhile.
     const Part* known = nullptr;

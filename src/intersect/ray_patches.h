@@ -2,11 +2,13 @@
 // strays from it; of a surface's parts they are made when a ray first comes near.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -36,6 +38,28 @@ RayPatch make_ray_patch(const Surface& surface, const SurfaceGrid& grid, std::si
 /// Holds the facet and what strays from it.
 Box box_of(const RayPatch& patch);
 
+/// A ball around each of some patches with its stray, many side by side.
+struct PatchBalls {
+    static constexpr std::size_t kMost = 64;
+    alignas(64) double middle[3][kMost] = {}, square[kMost];  // squares of radii; below zero: no ball
+    std::size_t count = 0;
+
+    PatchBalls() { std::fill(std::begin(square), std::end(square), -1.0); }
+    void add(const PointBall& ball) {
+        for (int k = 0; k < 3; ++k) middle[k][count] = ball.middle[k];
+        square[count++] = ball.radius * ball.radius;
+    }
+};
+
+/// A stretch of a ray, by distances along it.
+struct RayStretch {
+    Vec3 origin{0}, direction{0};  // unit
+    double from = 0, to = 0;
+};
+
+/// A bit per ball: whether the stretch comes into it.
+std::uint64_t balls_met(const PatchBalls& balls, const RayStretch& ray);
+
 /// The patches of all parts of a surface, each part's made when they are first asked for. Thread-safe.
 class PartPatches {
   public:
@@ -48,30 +72,10 @@ class PartPatches {
         for (const auto& part : parts_) delete part.load();
     }
 
-    static constexpr Id kMostOfPart = 64;
+    static constexpr Id kMostOfPart = PatchBalls::kMost;
     struct Part {
         std::vector<RayPatch> patches;
-        // A ball around each patch with its stray: all middles' x, all y, all z, all squares of radii.
-        std::vector<double> balls;
-
-        /// A bit per patch: whether the ray's line comes into its ball.
-        std::uint64_t may_meet(const RayFrame& frame) const {
-            // In two loops, so that the compiler makes vectors of the first.
-            std::array<double, kMostOfPart> beyond;
-            const std::size_t count = patches.size();
-            const double *const middle_x = balls.data(), *const middle_y = middle_x + count,
-                                *const middle_z = middle_y + count, *const square = middle_z + count;
-            for (std::size_t i = 0; i < count; ++i) {
-                const double a = middle_x[i] - frame.origin.x, b = middle_y[i] - frame.origin.y,
-                             c = middle_z[i] - frame.origin.z;
-                const double x = frame.x.x * a + frame.x.y * b + frame.x.z * c,
-                             y = frame.y.x * a + frame.y.y * b + frame.y.z * c;
-                beyond[i] = x * x + y * y - square[i];
-            }
-            std::uint64_t found = 0;
-            for (std::size_t i = 0; i < count; ++i) found |= std::uint64_t{beyond[i] <= 0} << i;
-            return found;
-        }
+        PatchBalls balls;
     };
 
     const Part& of(Id part) const {
@@ -81,7 +85,8 @@ class PartPatches {
 
     /// Of the numbers of patches, which are those of a part and then those of the next: part and place in it.
     static Id number(Id part, std::size_t patch) { return part * kMostOfPart + static_cast<Id>(patch); }
-    const RayPatch& patch(Id number) const { return of(number / kMostOfPart).patches[number % kMostOfPart]; }
+    static Id part_of(Id number) { return number / kMostOfPart; }
+    const RayPatch& patch(Id number) const { return of(part_of(number)).patches[number % kMostOfPart]; }
 
   private:
     const Part& make(Id part) const;

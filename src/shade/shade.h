@@ -116,8 +116,8 @@ struct SeenAlong {
 
 /// The light at a point of a surface, as it arrives.
 struct ReachingLight {
-    // Which lights reach it, as a hash of the set: equal sets have equal ones. Lights of several samples
-    // reach it with all, or with some, or not.
+    // Which lights of one sample, whose shadows have hard edges, reach it, as a hash of the set: equal sets
+    // have equal ones.
     std::uint64_t lights = 0;
     ArrivedLight arrived;  // of a plain surface only `matt`: irradiance over pi, and the ambient radiance
     // Radiance of what comes over optics, a part of the light that shade_rays gives and no part of `arrived`.

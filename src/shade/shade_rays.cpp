@@ -46,12 +46,9 @@ Vec3 dome_radiance(const ShadeScene& scene, const Light& dome, const Vec3& towar
            background_radiance(scene.background, *scene.environment_map, toward, {side * u, side * v});
 }
 
-/// How much of a light reaches a point.
-enum class Reach : std::size_t { kAll, kPart };
-
 /// Of sets of lights the hash is the sum of these: a number like a random one (splitmix64's finalizer).
-std::uint64_t number_of_light(std::size_t light, Reach reach) {
-    std::uint64_t x = (2 * light + static_cast<std::size_t>(reach) + 1) * 0x9e3779b97f4a7c15u;
+std::uint64_t number_of_light(std::size_t light) {
+    std::uint64_t x = (light + 1) * 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
     return x ^ (x >> 31);
@@ -162,7 +159,7 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
         return;
     }
     const std::size_t samples = sample_count(scene, l);
-    ShadeBatch::Bits by_any = 0, by_all = wanted;
+    ShadeBatch::Bits by_any = 0;
     for (std::size_t k = 0; k < samples; ++k) {
         const Vec3 color = find_sample(l, k) * light.color;
         ShadeBatch::Bits lit = batch.lit & wanted;
@@ -172,13 +169,10 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
         add_light(batch, color, lit);
         add_viewed(l, k, lit & viewed);
         by_any |= lit;
-        by_all &= lit;
     }
     if (is_dome(light)) for_each_of(viewed, [&](std::size_t i) { add_lobe(l, i); });
     if (light.caustics && scene.caustic) add_caustic(l, wanted);
-    for_each_of(by_any, [&](std::size_t i) {
-        lights[i] += number_of_light(l, by_all & Segments::bit(i) ? Reach::kAll : Reach::kPart);
-    });
+    if (samples == 1) for_each_of(by_any, [&](std::size_t i) { lights[i] += number_of_light(l); });
 }
 
 /// The light found last, by what it passes through.

@@ -19,6 +19,8 @@ constexpr std::size_t kCorners = SpreadContribution::kCorners;
 // Of the light at the shaded point: how far that at the outermost samples may be off in the mean, where
 // samples are not lit one by one, and, of whole pixels, not in blocks either.
 constexpr double kWholeRoom = 0.25, kPartRoom = 0.05, kBlockRoom = 0.06;
+// How far that at one of them may be off, as a share of the larger of both.
+constexpr double kWholeStep = 0.5, kPartStep = 0.2, kBlockStep = 0.2;
 // Shaded sample by sample: surfaces of less roughness, whose highlights are small, and those whose bumps
 // inside a fragment make up for more of it, which one wider lobe shows in the wrong places.
 constexpr double kPolished = 0.3, kWidened = 0.05;
@@ -30,6 +32,7 @@ class FragmentContributions {
   public:
     explicit FragmentContributions(const FragmentShading& shading) : shading_(shading) {
         waiting_.reserve(kMostShaded);
+        at_corners_.resize(kMostShaded * kCorners);
     }
 
     void add(const SpreadContribution& contribution, ShadedFragment& shaded) {
@@ -49,7 +52,7 @@ class FragmentContributions {
         const Hit& hit = *one.contribution().seen.hit;
         return hit.seen() && !one.corners().empty() && is_lit(shading_.world.shading, hit);
     }
-    void find_light_at_corners(std::span<const std::size_t> points, std::span<ReachingLight> light) const;
+    void find_light_at_corners(std::span<const std::size_t> points);
     /// What is known of a fragment's light, and what its pictures show.
     struct KnownLight {
         const ReachingLight& centre;
@@ -63,6 +66,7 @@ class FragmentContributions {
     const FragmentShading& shading_;
     std::vector<SpreadContribution> waiting_;
     std::array<ShadedFragment*, kMostShaded> shaded_{};
+    std::vector<ReachingLight> at_corners_;  // of the points at hand, one after the other
 };
 
 /// What a surface makes of light, that it does not emit itself: of a matt one without its colour.
@@ -84,9 +88,8 @@ double corner_share(int side) {
     return (side + 1.0) / (3.0 * (side - 1));
 }
 
-/// The light at all corners of those of `points` that are lit, one after the other.
-void FragmentContributions::find_light_at_corners(std::span<const std::size_t> points,
-                                                  std::span<ReachingLight> light) const {
+/// The light at all corners of those of `points` that are lit.
+void FragmentContributions::find_light_at_corners(std::span<const std::size_t> points) {
     std::array<SeenAlong, kMostShaded * kCorners> corners;
     std::vector<MapTexels> texels;  // where pictures say how light comes; stay in place
     std::size_t count = 0;
@@ -103,7 +106,8 @@ void FragmentContributions::find_light_at_corners(std::span<const std::size_t> p
             corners[count++].without_caustics = true;
         }
     }
-    find_reaching_light(shading_.world.shading, std::span(corners).first(count), light.first(count));
+    find_reaching_light(shading_.world.shading, std::span(corners).first(count),
+                        std::span(at_corners_).first(count));
 }
 
 /// Whether a surface's highlights are too small for one point of a fragment, or those of its bumps too many.
@@ -116,26 +120,33 @@ bool has_small_highlights(const ShadeScene& scene, const Hit& hit, const MapTexe
     return own < kPolished || look.roughness > own + kWidened;
 }
 
-/// Samples are lit one by one where other lights reach the outermost than the shaded point, or light changes
-/// by more than a mean can tell; in blocks where it changes by less.
+/// Samples are lit one by one where other lights of one sample reach the outermost than the shaded point, or
+/// light changes by more than a mean can tell; in blocks where it changes by less.
 void FragmentContributions::even_out_one(std::size_t i, const KnownLight& known, Vec3& light) {
     const SpreadContribution& contribution = waiting_[i];
     const Hit& hit = *contribution.contribution().seen.hit;
     const SurfaceLook look = look_at(shading_.world.shading, hit, known.texels);
     const std::span<const std::uint8_t> numbers = contribution.corner_numbers();
     bool by_sample = has_small_highlights(shading_.world.shading, hit, known.texels);
-    ArrivedLight mean;
+    const Vec3 here = arriving(look, known.centre.arrived);
+    Vec3 mean(0);
+    double step = 0;
     for (const std::size_t number : numbers) {
-        ReachingLight at = known.at_corners[number];
+        const ReachingLight& at = known.at_corners[number];
         by_sample = by_sample || at.lights != known.centre.lights;
-        mean += at.arrived /= double(numbers.size());
+        const Vec3 there = arriving(look, at.arrived), most = glm::max(here, there);
+        mean += there / double(numbers.size());
+        for (int k = 0; k < 3; ++k)
+            if (most[k] > 0) step = std::max(step, std::fabs(there[k] - here[k]) / most[k]);
     }
     const bool whole = contribution.is_whole_pixel();
-    const Vec3 here = arriving(look, known.centre.arrived), off = arriving(look, mean) - here;
-    const auto is_beyond = [&](double room) { return of_worst_colour(glm::abs(off) - room * here) > 0; };
-    by_sample = by_sample || is_beyond(whole ? kWholeRoom : kPartRoom);
+    const Vec3 off = mean - here;
+    const auto is_beyond = [&](double room, double most_step) {
+        return step > most_step || of_worst_colour(glm::abs(off) - room * here) > 0;
+    };
+    by_sample = by_sample || (whole ? is_beyond(kWholeRoom, kWholeStep) : is_beyond(kPartRoom, kPartStep));
     const bool has_blocks = whole && shading_.side > 2 && shading_.side % 2 == 0;
-    if (by_sample || (has_blocks && is_beyond(kBlockRoom))) {
+    if (by_sample || (has_blocks && is_beyond(kBlockRoom, kBlockStep))) {
         const std::vector<SpreadContribution::Part> parts =
             contribution.parts(by_sample ? 1 : 2, known.texels);
         if (!parts.empty()) light = mean_of_parts(parts, known.at_corners);
@@ -207,8 +218,7 @@ void FragmentContributions::shade_at_points(std::span<Vec3> light) {
     }
     shade_rays(shading_.world.shading, std::span(seen).first(points.size()),
                std::span(shown).first(points.size()), std::span(centre).first(points.size()));
-    std::array<ReachingLight, kMostShaded * kCorners> at_corners;
-    find_light_at_corners(points, at_corners);
+    find_light_at_corners(points);
     std::size_t first = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const std::size_t i = points[k];
@@ -216,7 +226,7 @@ void FragmentContributions::shade_at_points(std::span<Vec3> light) {
         if (!is_spread(waiting_[i])) continue;
         const Vec3 caustic = centre[k].caustic;  // a mean over all of them already
         if (caustic != Vec3(0)) light[i] -= caustic;
-        even_out_one(i, {centre[k], std::span(at_corners).subspan(first), texels[k]}, light[i]);
+        even_out_one(i, {centre[k], std::span(at_corners_).subspan(first), texels[k]}, light[i]);
         if (caustic != Vec3(0)) light[i] += caustic;
         first += waiting_[i].corners().size();
     }

@@ -41,10 +41,10 @@ struct FragmentShading {
 /// Colours of fragments, the means over their samples. Where a sample stands is told by its facet's map,
 /// drawn inside the triangle that all of them see.
 /// - Fragments of up to five samples are lit at each, where no light comes over optics. Of the others light
-///   is asked for at the shaded point and at the outermost samples, at most four. Where other lights
-///   reach those, or light differs by much, each sample is lit by itself, with what its textures show there;
-///   where it differs by less, blocks of 2 x 2 samples are. Over a whole pixel it is else the mean of the
-///   quadratic that goes through them all.
+///   is asked for at the shaded point and at the outermost samples, at most four. Where other lights of one
+///   sample reach those, or light differs by much, each sample is lit by itself, with what its textures show
+///   there; where it differs by less, blocks of 2 x 2 samples are. Over a whole pixel it is else the mean of
+///   the quadratic that goes through them all.
 /// - Base colours, and the background's, are means over the parallelogram that the facet's map carries a
 ///   pixel to; where that bends, or the fragment is a part of a pixel, the mean of its samples' squares.
 /// - Weights (Fresnel, glass on the way) are those of the shaded point; the way through the last glass is
