@@ -16,10 +16,6 @@ constexpr double kFaintLight = 0.03;
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
 
-double strength_of(const Vec3& light) {
-    return light.x + light.y + light.z;
-}
-
 /// Whether every history of one that carries so much is one of the other.
 bool has_all(const std::vector<LightPath>& paths, const std::vector<LightPath>& of, double least) {
     return std::all_of(of.begin(), of.end(), [&](const LightPath& path) {

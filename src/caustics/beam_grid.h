@@ -43,6 +43,8 @@ class BeamGrid {
     const std::vector<LightPath>& paths(Id corner) const { return paths_[corner].paths; }
     const CutPaths& cut(Id corner) const { return paths_[corner].cut; }
     std::size_t corner_count() const { return places_.size(); }
+    /// Path of all: the sum of its colours.
+    double brightest() const { return brightest_; }
     /// Triangles that were left too coarse, for want of levels or room.
     std::size_t coarse_count() const { return coarse_; }
 
@@ -76,6 +78,10 @@ class BeamGrid {
     double brightest_ = 0;  // path so far: the sum of its colours
     std::size_t coarse_ = 0;
 };
+
+inline double strength_of(const Vec3& light) {
+    return light.x + light.y + light.z;
+}
 
 /// The path of that history; null: there is none.
 inline const LightPath* find_history(const std::vector<LightPath>& paths, const LightPath& like) {

@@ -50,8 +50,7 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
     }
     const double made = kDividingShare + kBorderShare;
     refined_ = std::make_unique<RefinedBeams>(space_, source_, beams_, progress.part(made, 1 - made));
-    tree_ = BeamTree(
-        beams_, [&](Id beam) -> const auto& { return refined_->middles(beam); });
+    tree_ = BeamTree(beams_, [&](Id beam) { return refined_->side_middles(beam); });
 }
 
 BeamLight::~BeamLight() = default;

@@ -19,11 +19,11 @@ struct Bulge {
 /// rays o + t v that is do + t dv but for what their lengths to the plane differ, S, times how their
 /// directions do; S is at most 2/3 of the shortest and a third of the beam's width (falls_evenly). Rounded
 /// up.
-Bulge bulge_of(const std::array<const BeamEnd*, 3>& end, const std::array<BeamEnd, 3>& middle) {
+Bulge bulge_of(const std::array<const BeamEnd*, 3>& end, const std::array<const BeamEnd*, 3>& middle) {
     const Vec3 mean = (end[0]->direction + end[1]->direction + end[2]->direction) / 3.0;
     double origins = 0, directions = 0, wide = 0, apart = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const BeamEnd &a = *end[(k + 1) % 3], &b = *end[(k + 2) % 3], &m = middle[k];
+        const BeamEnd &a = *end[(k + 1) % 3], &b = *end[(k + 2) % 3], &m = *middle[k];
         origins = std::max(origins, length(m.origin - 0.5 * (a.origin + b.origin)));
         directions = std::max(directions, length(m.direction - 0.5 * (a.direction + b.direction)));
         wide = std::max(wide, length(a.origin - b.origin));
@@ -80,7 +80,7 @@ void BeamTree::build(const Build& of, std::uint32_t first, std::uint32_t end) {
     const auto for_each_end = [&](const auto& use) {
         for (std::uint32_t i = first; i < end; ++i) {
             for (const Id e : of.beams.beams[order_[i]].end) use(of.beams.ends[e]);
-            for (const BeamEnd& middle : of.middles(order_[i])) use(middle);
+            for (const BeamEnd* middle : of.middles(order_[i])) use(*middle);
         }
     };
     Node node;

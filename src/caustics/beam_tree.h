@@ -16,7 +16,7 @@ namespace trilens {
 class BeamTree {
   public:
     /// The exact rays at the middles of a beam's sides.
-    using Middles = std::function<const std::array<BeamEnd, 3>&(Id beam)>;
+    using Middles = std::function<std::array<const BeamEnd*, 3>(Id beam)>;
 
     BeamTree() = default;
     BeamTree(const Beams& beams, const Middles& middles);

@@ -11,6 +11,7 @@
 namespace trilens {
 namespace {
 
+/// Of a side, until the brightest path's border is found; a half as bright path's needs one less.
 constexpr int kBisections = 12;
 
 /// The last place at which a history is, on the way between two corners of which one has it.
@@ -26,6 +27,14 @@ struct BorderSearch {
     std::vector<HistoryBorder*> borders;
     Vec2 low{0}, high{0};  // where the histories are, and are not
     int bisections = 0;
+
+    /// Whether the borders' paths, as bright as they are where they were met last, want more.
+    bool is_open(double brightest) const {
+        double strength = 0;
+        for (const HistoryBorder* border : borders)
+            strength = std::max(strength, strength_of(border->path.light));
+        return !borders.empty() && std::ldexp(strength, kBisections - bisections) > brightest;
+    }
 
     /// What becomes of it at the middle: of those that are there, and those that are not.
     std::array<BorderSearch, 2> bisect(const BeamGrid& grid) const {
@@ -64,7 +73,7 @@ void find_on_side(const BeamGrid& grid, std::span<HistoryBorder* const> borders,
         const BorderSearch search = std::move(searches.back());
         searches.pop_back();
         for (BorderSearch& part : search.bisect(grid))
-            if (!part.borders.empty() && part.bisections < kBisections) searches.push_back(std::move(part));
+            if (part.is_open(grid.brightest())) searches.push_back(std::move(part));
     }
 }
 

@@ -68,7 +68,8 @@ inline BeamCorners corners_of(const Beams& beams, const LightBeam& beam) {
 
 /// The beams of a divided window, added to `beams`, but those all of whose rays go on to another optic and
 /// meet no object before. Triangles on which a history ends are cut where it does, which is found along their
-/// sides to a 2^-12th of them. Throws Interrupted soon after `progress` says so.
+/// sides to a 2^-12th of them for the brightest path, and to twice as much for half as bright a one. Throws
+/// Interrupted soon after `progress` says so.
 void add_beams(const BeamGrid& grid, Beams& beams, const Progress& progress = {});
 
 }  // namespace trilens

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
 #include <numeric>
+#include <set>
 
 #include "base/util/parallel.h"
 
@@ -48,7 +53,9 @@ ReceiverPlane plane_of(const ReceiverFace& face, const Vec3& normal) {
     Receiver receiver;
     receiver.point = face.center;
     receiver.normal = normal;
-    return ReceiverPlane(receiver, 0);
+    ReceiverPlane plane(receiver, 0);
+    plane.dual_s = face.along, plane.dual_t = cross(normal, face.along);
+    return plane;
 }
 
 }  // namespace
@@ -66,35 +73,71 @@ Way way_to(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane
     return free == 3 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
 }
 
-/// Of one beam: what it becomes.
+/// Of one beam: what it becomes. What it traces to divide the beam is forgotten but for what its parts need.
 struct PlaneBeams::Maker {
     const Source& source;
     const ReceiverPlane& plane;
     const PlaneBeamsParams& params;
     const Progress& progress;
-    double half;  // of the square around the face
+    const Vec2& half;  // of the rectangle around the face
     Id index;
     Way way;
     std::vector<Curved> curved;
     std::vector<Flat> flat;
+    using Side = std::pair<const BeamEnd*, const BeamEnd*>;
+    std::map<Side, std::unique_ptr<const BeamEnd>> traced;  // in the middles of parts' sides
+    std::vector<std::unique_ptr<const BeamEnd>> ends;       // of those the ends of its parts
 
-    void add(const BeamEnds& end, const Lazy<BeamDivision>* of, int level) {
+    void make() {
+        const BeamEnds& end = corners_of(source.beams, source.beams.beams[index]).end;
+        add(end, source.refined.side_middles(index), 0);
+        std::set<const BeamEnd*> needed;
+        for (const Curved& one : curved) needed.insert(one.corners.end.begin(), one.corners.end.end());
+        for (const Flat& one : flat) needed.insert(one.corners.end.begin(), one.corners.end.end());
+        for (auto& [side, middle] : traced)
+            if (needed.contains(middle.get())) ends.push_back(std::move(middle));
+        traced.clear();
+    }
+
+    /// The exact rays at the middles of a part's sides; neighbours share them.
+    BeamEnds middles(const BeamEnds& end) {
+        BeamEnds middle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const BeamEnd *a = end[(k + 1) % 3], *b = end[(k + 2) % 3];
+            std::unique_ptr<const BeamEnd>& known = traced[std::minmax(a, b, std::less<>())];
+            if (!known) known = std::make_unique<const BeamEnd>(source.refined.middle(index, *a, *b));
+            middle[k] = known.get();
+        }
+        return middle;
+    }
+
+    void add(const BeamEnds& end, const BeamEnds& middle, int level) {
         progress.stop_if_cancelled();
-        const BeamDivision& by =
-            of ? source.refined.division(index, end, *of) : source.refined.division(index);
-        const CurvedBeam beam{source.refined.corners(index, end),
-                              {&by.middle[0], &by.middle[1], &by.middle[2]}};
+        const CurvedBeam beam{source.refined.corners(index, end), middle};
         const std::optional<std::array<Vec2, 6>> at = beam.fall(plane);
         if (!at) {
-            if (level < kMostCuts && is_near(end)) return add_parts(end, by, level);
+            if (level < kMostCuts && is_near(end) && !is_faint(beam.corners))
+                return add_parts(end, middle, level);
             return add_flat(beam.corners);
         }
         const double bulge = bulge_on_plane(*at);
-        if (is_beyond(*at, half, 2 * bulge)) return;
+        if (is_beside(*at, 2 * bulge)) return;
         const double room = room_of(beam, *at);
-        if (bulge > kNearlyStraight * room && level < kMostHalvings && is_off(end, by, *at, room))
-            return add_parts(end, by, level);
+        if (bulge > kNearlyStraight * room && level < kMostHalvings && is_off(end, middle, *at, room))
+            return add_parts(end, middle, level);
         add_curved(beam, *at, bulge);
+    }
+
+    /// Whether the hull lies beside the face by more than `room`.
+    template <std::size_t kCount>
+    bool is_beside(const std::array<Vec2, kCount>& at, double room) const {
+        Box2 box;
+        for (const Vec2& one : at) box.include(one);
+        return !box.meets({-half - room, half + room});
+    }
+
+    FallenBeams fallen(const BeamCorners& corners) const {
+        return fall(corners, plane, std::max(half.x, half.y));
     }
 
     /// How far it may be off.
@@ -134,7 +177,7 @@ struct PlaneBeams::Maker {
     }
 
     void add_curved(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double bulge) {
-        Curved one{beam, {at, beam.lights()}, index, way};
+        Curved one{beam.corners, {at, beam.lights()}, index, way};
         one.sides = sides_of(one.curve, bulge);
         one.mean_light = mean_light(one.curve.light, one.sides);
         one.strips = strips_around(at);
@@ -143,32 +186,49 @@ struct PlaneBeams::Maker {
         curved.push_back(one);
     }
 
-    void add_parts(const BeamEnds& end, const BeamDivision& by, int level) {
-        const std::array<BeamEnds, 4> parts = quarters(end, by.middle);
-        for (std::size_t i = 0; i < 4; ++i) add(parts[i], &by.part[i], level + 1);
+    void add_parts(const BeamEnds& end, const BeamEnds& middle, int level) {
+        for (const BeamEnds& part : quarters(end, middle)) add(part, middles(part), level + 1);
     }
 
     /// Whether any of it comes to the face.
     bool is_near(const BeamEnds& end) const {
-        const FallenBeams fallen = fall(source.refined.corners(index, end), plane, half);
-        for (std::size_t i = 0; i < fallen.count; ++i)
-            if (!is_beyond(fallen.part[i].at, half, 0)) return true;
+        const FallenBeams flats = fallen(source.refined.corners(index, end));
+        for (std::size_t i = 0; i < flats.count; ++i)
+            if (!is_beside(flats.part[i].at, 0)) return true;
         return false;
     }
 
-    void add_flat(const BeamCorners& corners) {
-        const FallenBeams fallen = fall(corners, plane, half);
-        for (std::size_t i = 0; i < fallen.count; ++i)
-            if (!is_beyond(fallen.part[i].at, half, 0)) flat.push_back({corners, fallen.part[i], index, way});
+    /// Whether it brings little light to the plane, wherever its ends fall: by its width across the rays
+    /// there, since its flat triangle may have no bounds.
+    bool is_faint(const BeamCorners& corners) const {
+        double strength = 0;
+        for (const BeamEnd* end : corners.end) strength = std::max(strength, sum_of(end->light));
+        bool falls = false;
+        for (const BeamEnd* end : corners.end) {
+            const double height = dot(end->origin - plane.point, plane.normal),
+                         fall = -dot(end->direction, plane.normal);
+            if (!(height >= 0) || !(fall > kGrazingFall)) continue;
+            falls = true;
+            std::array<Vec3, 3> at;
+            for (std::size_t k = 0; k < 3; ++k)
+                at[k] = corners.end[k]->origin + height / fall * corners.end[k]->direction;
+            const double area = 0.5 * length(cross(at[1] - at[0], at[2] - at[0]));
+            if (!(strength * corners.measure * fall < params.faint_light * area)) return false;
+        }
+        return falls;
     }
 
-    bool is_off(const BeamEnds& end, const BeamDivision& by, const std::array<Vec2, 6>& at,
-                double room) const {
+    void add_flat(const BeamCorners& corners) {
+        const FallenBeams flats = fallen(corners);
+        for (std::size_t i = 0; i < flats.count; ++i)
+            if (!is_beside(flats.part[i].at, 0)) flat.push_back({corners, flats.part[i], index, way});
+    }
+
+    bool is_off(const BeamEnds& end, const BeamEnds& middle, const std::array<Vec2, 6>& at, double room) {
         static const std::array<QuarterMiddle, 9> places = quarter_middles();
-        const std::array<BeamEnds, 4> parts = quarters(end, by.middle);
+        const std::array<BeamEnds, 4> parts = quarters(end, middle);
         for (const QuarterMiddle& one : places) {
-            const BeamEnd& exact =
-                source.refined.division(index, parts[one.part], by.part[one.part]).middle[one.middle];
+            const BeamEnd& exact = *middles(parts[one.part])[one.middle];
             const std::optional<Vec2> there = place_on(plane, exact);
             if (!there) return true;
             const std::array<double, 6> weights = quadratic_weights(one.weights);
@@ -186,20 +246,27 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
     std::vector<Id> near;
     source.tree.for_each_near(face.center, face.radius + params.reach,
                               [&](Id beam) { near.push_back(beam); });
-    const Maker none{source, plane_,        params, progress, face.radius + params.reach,
-                     kNone,  Way::kUnknown, {},     {}};
-    std::vector<Maker> made(near.size(), none);
+    const Vec2 half = face.half + params.reach;
+    struct Made {
+        std::vector<Curved> curved;
+        std::vector<Flat> flat;
+        std::vector<std::unique_ptr<const BeamEnd>> ends;
+    };
+    std::vector<Made> made(near.size());
     LoopProgress done(progress, static_cast<double>(near.size()));
     parallel_for(near.size(), 32, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const LightBeam& beam = source.beams.beams[near[i]];
-            made[i].index = near[i];
-            made[i].way = way_to(source.beams, beam, plane_, params.same_place);
-            if (made[i].way != Way::kStopped) made[i].add(corners_of(source.beams, beam).end, nullptr, 0);
+            const Way way = way_to(source.beams, beam, plane_, params.same_place);
+            if (way == Way::kStopped) continue;
+            Maker maker{source, plane_, params, progress, half, near[i], way, {}, {}, {}, {}};
+            maker.make();
+            made[i] = {std::move(maker.curved), std::move(maker.flat), std::move(maker.ends)};
         }
         done.add(static_cast<double>(to - from));
     });
-    for (const Maker& one : made) {
+    for (Made& one : made) {
+        std::move(one.ends.begin(), one.ends.end(), std::back_inserter(ends_));
         curved_.insert(curved_.end(), one.curved.begin(), one.curved.end());
         flat_.insert(flat_.end(), one.flat.begin(), one.flat.end());
     }
@@ -249,7 +316,7 @@ std::array<PlaneBeams::Strip, 3> PlaneBeams::strips_around(const std::array<Vec2
 
 /// All that comes to the footprint, times its part of the film.
 Vec3 PlaneBeams::light_of(const Curved& one, const std::array<Vec2, 6>& at) {
-    const double measure = one.beam.corners.measure;
+    const double measure = one.corners.measure;
     if (is_inside(at)) return measure * one.mean_light;
     const PieceGrid& grid = PieceGrid::of(one.sides);
     CutPieces cut;

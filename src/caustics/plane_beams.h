@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -71,7 +72,7 @@ class PlaneBeams {
         }
     };
     struct Curved {
-        CurvedBeam beam;
+        BeamCorners corners;
         FallenCurve curve;
         Id index = kNone;
         Way way = Way::kUnknown;
@@ -126,6 +127,7 @@ class PlaneBeams {
     void build(std::uint32_t first, std::uint32_t end);
 
     ReceiverPlane plane_;
+    std::vector<std::unique_ptr<const BeamEnd>> ends_;  // of parts, that are no beams'
     std::vector<Curved> curved_;
     std::vector<Flat> flat_;
     std::vector<Node> nodes_;           // depth first
@@ -153,10 +155,10 @@ void PlaneBeams::for_each_piece(const ReceiverPlane& point, const Use& use) cons
     for_each_near(box_of(parallelogram_of(point, map)), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) return use_flat(flat_[entry - curved_.size()], map, 0, use);
         const Curved& one = curved_[entry];
-        one.beam.for_each_piece({fallen_on(one, map), one.curve.light}, 0, one.sides,
-                                [&](const BeamCorners& corners, const FallenBeam& fallen) {
-                                    use(one.index, one.way, corners, fallen);
-                                });
+        CurvedBeam{one.corners, {}}.for_each_piece({fallen_on(one, map), one.curve.light}, 0, one.sides,
+                                                   [&](const BeamCorners& corners, const FallenBeam& fallen) {
+                                                       use(one.index, one.way, corners, fallen);
+                                                   });
     });
 }
 
@@ -192,13 +194,13 @@ void PlaneBeams::use_parts(const Curved& one, const std::array<Vec2, 6>& at, con
     FallenBeam fallen;
     if (is_inside(at)) {
         for (std::size_t k = 0; k < 3; ++k) fallen.light[k] = one.mean_light;
-        return use(one.index, one.way, one.beam.corners, fallen,
-                   FootprintPart{one.beam.corners.measure, Vec3(1.0 / 3)});
+        return use(one.index, one.way, one.corners, fallen,
+                   FootprintPart{one.corners.measure, Vec3(1.0 / 3)});
     }
     const PieceGrid& grid = PieceGrid::of(one.sides);
     CutPieces cut;
     cut_pieces(at, one.sides, cut);
-    const double measure = one.beam.corners.measure / static_cast<double>(grid.pieces);
+    const double measure = one.corners.measure / static_cast<double>(grid.pieces);
     for (std::size_t p = 0; p < grid.pieces; ++p) {
         if (!(cut.share[p] > 0)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -207,7 +209,7 @@ void PlaneBeams::use_parts(const Curved& one, const std::array<Vec2, 6>& at, con
             fallen.light[k] = Vec3(0);
             for (std::size_t c = 0; c < 6; ++c) fallen.light[k] += grid.quadratic[n][c] * one.curve.light[c];
         }
-        use(one.index, one.way, one.beam.corners, fallen,
+        use(one.index, one.way, one.corners, fallen,
             FootprintPart{cut.share[p] * measure,
                           Vec3(cut.weight[0][p], cut.weight[1][p], cut.weight[2][p])});
     }

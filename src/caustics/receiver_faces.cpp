@@ -21,6 +21,15 @@ bool lies_in(const ReceiverFace& face, const Corners& points) {
     });
 }
 
+Vec3 longest_side(const Corners& points) {
+    Vec3 longest(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 side = points[(k + 1) % 3] - points[k];
+        if (length(side) > length(longest)) longest = side;
+    }
+    return longest;
+}
+
 }  // namespace
 
 ReceiverFaces::ReceiverFaces(const TriangleScene& scene) : face_of_(scene.size(), kNone) {
@@ -32,14 +41,25 @@ ReceiverFaces::ReceiverFaces(const TriangleScene& scene) : face_of_(scene.size()
         const Vec3 normal = normalize_or_zero(cross(points[1] - points[0], points[2] - points[0]));
         if (normal == Vec3(0)) continue;
         if (last == kNone || scene.object[t] != scene.object[last] || !lies_in(faces_.back(), points)) {
-            faces_.push_back({points[0], normal, {}, 0});
+            faces_.push_back({points[0], normal, {}, 0, normalize(longest_side(points)), {}});
             box = {};
         }
         for (const Vec3& point : points) box.include(point);
-        faces_.back().center = 0.5 * (box.low + box.high);
-        faces_.back().radius = 0.5 * length(box.size());
+        ReceiverFace& face = faces_.back();
+        face.center = 0.5 * (box.low + box.high);
+        face.center -= dot(face.center - face.point, face.normal) * face.normal;
+        face.radius = 0.5 * length(box.size());
         face_of_[t] = static_cast<Id>(faces_.size() - 1);
         last = t;
+    }
+    for (Id t = 0; t < scene.size(); ++t) {
+        if (face_of_[t] == kNone) continue;
+        ReceiverFace& face = faces_[face_of_[t]];
+        for (const Id corner : scene.triangles[t]) {
+            const Vec3 way = scene.points[corner] - face.center;
+            face.half = glm::max(
+                face.half, glm::abs(Vec2(dot(way, face.along), dot(way, cross(face.normal, face.along)))));
+        }
     }
 }
 

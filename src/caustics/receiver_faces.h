@@ -11,8 +11,11 @@ namespace trilens {
 /// A plane and a ball around what light is asked for on it.
 struct ReceiverFace {
     Vec3 point{0}, normal{0};  // unit; both of its sides receive
-    Vec3 center{0};
+    Vec3 center{0};            // in the plane
     double radius = 0;
+    // A rectangle in the plane around the center that holds it.
+    Vec3 along{0};  // unit: its first triangle's longest side
+    Vec2 half{0};   // of its sides, along and across
 };
 
 /// One side of one of them.

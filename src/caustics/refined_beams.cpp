@@ -36,11 +36,11 @@ double longest_side(std::span<const Vec2> at) {
 
 }  // namespace
 
-std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle) {
-    return {{{end[0], &middle[2], &middle[1]},
-             {&middle[2], end[1], &middle[0]},
-             {&middle[1], &middle[0], end[2]},
-             {&middle[0], &middle[1], &middle[2]}}};
+std::array<BeamEnds, 4> quarters(const BeamEnds& end, const BeamEnds& middle) {
+    return {{{end[0], middle[2], middle[1]},
+             {middle[2], end[1], middle[0]},
+             {middle[1], middle[0], end[2]},
+             middle}};
 }
 
 std::shared_ptr<const BeamDivision> RecentDivisions::get(Id beam, std::uint32_t place, const Make& make) {
@@ -57,6 +57,14 @@ std::shared_ptr<const BeamDivision> RecentDivisions::get(Id beam, std::uint32_t 
     if (shard.known.size() >= kMostInShard) shard.known.clear();
     return shard.known.try_emplace(key, std::move(division)).first->second;
 }
+
+namespace {
+
+std::array<BeamEnds, 4> quarters(const BeamEnds& end, const BeamDivision& by) {
+    return quarters(end, BeamEnds{&by.middle[0], &by.middle[1], &by.middle[2]});
+}
+
+}  // namespace
 
 /// A part of a beam between three ends.
 struct RefinedBeams::Part {
@@ -261,7 +269,7 @@ struct RefinedBeams::Visit {
                          [&](const BeamEnd* ray) { return place_on(plane, *ray).has_value(); }) ||
             !may_come(rays))
             return;
-        const std::array<Ends, 4> parts = quarters(part.end, by.middle);
+        const std::array<Ends, 4> parts = quarters(part.end, by);
         for (std::size_t i = 0; i < 4; ++i)
             visit({parts[i], by.part[i], place_of_part(part.place, i)}, level + 1, INFINITY);
     }
@@ -285,7 +293,7 @@ struct RefinedBeams::Visit {
             bulge = std::max(bulge, length(*on - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
         }
         if (is_beyond(at, bulge)) return;
-        const std::array<Ends, 4> parts = quarters(end, by.middle);
+        const std::array<Ends, 4> parts = quarters(end, by);
         const std::array<std::array<Vec2, 3>, 4> on_plane{
             {{at[0], at[5], at[4]}, {at[5], at[1], at[3]}, {at[4], at[3], at[2]}, {at[3], at[4], at[5]}}};
         const double bright = brightness(end);
@@ -321,8 +329,7 @@ void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double gu
 
 void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const {
     const BeamCorners corners = corners_of(*beams_, beams_->beams[beam]);
-    const std::array<BeamEnd, 3>& middle = middles(beam);
-    const CurvedBeam curved{corners, {&middle[0], &middle[1], &middle[2]}};
+    const CurvedBeam curved{corners, side_middles(beam)};
     const std::optional<std::array<Vec2, 6>> at = curved.fall(plane);
     if (at)
         return curved.for_each_piece({*at, curved.lights()}, plane.has_footprint ? 0.5 : 0,

@@ -45,7 +45,7 @@ constexpr std::uint32_t place_of_part(std::uint32_t whole, std::size_t part) {
 }
 
 /// The corner triangles of a division, and the one between the middles.
-std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle);
+std::array<BeamEnds, 4> quarters(const BeamEnds& end, const BeamEnds& middle);
 
 /// Beams as exact rays have them: each is divided where, and as far as, a footprint asks, and what was traced
 /// is kept, of footprints up to kMostKept divisions, and the most recent of what they ask beyond. What is
@@ -59,10 +59,12 @@ class RefinedBeams {
                  const Progress& progress = {});
 
     /// The exact rays at the middles of a beam's sides, across from its ends.
-    const std::array<BeamEnd, 3>& middles(Id beam) const { return division(beam).middle; }
-    const BeamDivision& division(Id beam) const;
-    /// Of the part of a beam between three ends, that `of` stands for.
-    const BeamDivision& division(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of) const;
+    BeamEnds side_middles(Id beam) const {
+        const std::array<Id, 3>& side = side_[beam];
+        return {&side_middle_[side[0]], &side_middle_[side[1]], &side_middle_[side[2]]};
+    }
+    /// The exact ray of the beam's history in the middle between two others, in either order.
+    BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
     /// A part of a beam, with its part of the film.
     BeamCorners corners(Id beam, const BeamEnds& end) const;
 
@@ -82,7 +84,8 @@ class RefinedBeams {
 
   private:
     struct Visit;
-    BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
+    const BeamDivision& division(Id beam) const;
+    const BeamDivision& division(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of) const;
     void find_sides(const Progress& progress);
     void divide(Id beam, const BeamEnds& end, BeamDivision& into) const;
     struct Part;
