@@ -27,7 +27,7 @@ target_link_options(trilens_options INTERFACE $<$<BOOL:${TRILENS_SANITIZE_THREAD
 # namespace, or by #define) is therefore named once in a room; the compiler says where it is not. Apart: Highway's
 # kernels, which include themselves.
 option(TRILENS_UNITY "Compile a room's units together: faster as a whole, slower after a small change" ON)
-set(TRILENS_UNITY_BATCH 16 CACHE STRING "How many units of a room are compiled together")
+set(TRILENS_UNITY_BATCH 40 CACHE STRING "How many units of a room are compiled together")
 function(trilens_unite target)
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")

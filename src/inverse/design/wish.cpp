@@ -6,6 +6,7 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "inverse/design/mirror_fit.h"
+#include "inverse/unwrap/photo.h"
 
 namespace trilens {
 namespace {
@@ -16,13 +17,8 @@ bool is_all_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Catmull and Rom's cubic through four values; beyond a grid's border its last piece goes on.
-std::array<double, 4> catmull_rom(double t) {
-    const double t2 = t * t, t3 = t2 * t;
-    return {(-t3 + 2 * t2 - t) / 2, (3 * t3 - 5 * t2 + 2) / 2, (-3 * t3 + 4 * t2 + t) / 2, (t3 - t2) / 2};
-}
-
-/// Cubic over the whole grid, by Lagrange in the outermost pieces, whose neighbours are missing.
+/// Catmull and Rom's cubic over the whole grid, by Lagrange in the outermost pieces, whose neighbours are
+/// missing.
 std::array<double, 4> grid_weights(double in, int count, int& first) {
     const int cell = std::clamp(static_cast<int>(std::floor(in)), 0, count - 2);
     first = std::clamp(cell - 1, 0, count - 4);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -16,8 +15,6 @@
 
 namespace trilens {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 void check_photo(const World& world, const UnwrapPhoto& photo) {
     const Film& film = world.scene.film;
@@ -94,7 +91,7 @@ class PhotoDrawer {
         for (const MapImage& image : images) {
             if (!may_take(image.position)) continue;
             Resolution r = resolution_of(image.jacobian, place->dx, place->dy);
-            if (place->is_direction) r = {r.least * kDegree, r.most * kDegree};
+            if (place->is_direction) r = {glm::radians(r.least), glm::radians(r.most)};
             if (r.least >= request_.min_resolution) seen.push_back({&image, r, rank_of(image.position, r)});
         }
         const std::size_t at = static_cast<std::size_t>(py) * canvas.width + static_cast<std::size_t>(px);

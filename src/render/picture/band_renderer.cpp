@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
 constexpr std::size_t kMostKeys = 1u << 20;  // the same where samples have no record but a key
 constexpr std::size_t kBandsAtOnce = 3;      // on their way: seen, shaded, taken
-constexpr std::size_t kPixelsPerTask = 256, kSamplesPerTask = 1024;
+constexpr std::size_t kPixelsPerTask = 256, kColoursPerTask = 1024;
 constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 // Of a drawing, until its pixels are shaded; then the last of them are taken.
 constexpr double kShadingShare = 0.999;
@@ -67,7 +67,7 @@ class FilteredSamples {
         const double pixels_per_sample =
             static_cast<double>(window.pixels()) / static_cast<double>(grid_.size());
         const RayDifferentials differentials(world, viewer, grid_, progress.cancel);
-        parallel_for(colours_.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
+        parallel_for(colours_.size(), kColoursPerTask, [&](std::size_t from, std::size_t to) {
             source.progress.stop_if_cancelled();
             sample_colours(source.world, views, from, std::span(colours_).subspan(from, to - from),
                            grid_.side == 1 || gathers_light(source.world) ? &differentials : nullptr);
