@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/catmull_rom.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "inverse/design/mirror_fit.h"
-#include "inverse/unwrap/photo.h"
 
 namespace trilens {
 namespace {

@@ -4,13 +4,9 @@
 #include <array>
 #include <cmath>
 
-namespace trilens {
+#include "base/math/catmull_rom.h"
 
-std::array<double, 4> catmull_rom(double t) {
-    const double t2 = t * t, t3 = t2 * t;
-    return {-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3,
-            -0.5 * t2 + 0.5 * t3};
-}
+namespace trilens {
 
 Vec3 sample_bicubic(const Texture& photo, const Vec2& at) {
     const double x = at.x - 0.5, y = at.y - 0.5, left = std::floor(x), top = std::floor(y);

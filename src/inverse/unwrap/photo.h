@@ -2,15 +2,10 @@
 // of another picture covers on it.
 #pragma once
 
-#include <array>
-
 #include "base/description/material.h"
 #include "base/math/vec.h"
 
 namespace trilens {
-
-/// Weights of the four neighbours -1, 0, 1, 2 at the share t of the way from 0 to 1, by Catmull and Rom.
-std::array<double, 4> catmull_rom(double t);
 
 /// The colour at a place in pixels from the top left (centres at .5), not below 0; beyond the border the
 /// nearest pixels are repeated.
