@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/util/format.h"
 #include "camera/model/models.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr int kWaypoints = 8;   // from the principal point to the place that is looked for
 constexpr int kLensSteps = 25;  // for each
 constexpr double kLensAtRest = 1e-14;
+constexpr double kWaypointAtRest = 1e-3;  // the next one begins there
 
 std::array<double, 14> coefficients(const OpencvLens& lens) {
     std::array<double, 14> all{};
@@ -34,50 +36,68 @@ Mat3 tilt(double tx, double ty) {
 
 /// A place of the plane at z = 1, distorted.
 struct Distortion {
-    explicit Distortion(const OpencvLens& lens) : k(coefficients(lens)), sensor(tilt(k[12], k[13])) {}
+    explicit Distortion(const OpencvLens& lens)
+        : k(coefficients(lens)),
+          tilted(k[12] != 0 || k[13] != 0),
+          sensor(tilted ? tilt(k[12], k[13]) : Mat3(1)) {}
 
-    Vec2 operator()(const Vec2& p) const {
+    Vec2 operator()(const Vec2& p) const { return with_jacobian(p).first; }
+    Mat2 jacobian(const Vec2& p) const { return with_jacobian(p).second; }
+
+    /// Where p comes to lie, and its derivatives by p.x and p.y as columns.
+    std::pair<Vec2, Mat2> with_jacobian(const Vec2& p) const {
         const auto& [k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4, tx, ty] = k;
-        const double r2 = dot(p, p);
-        const double radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+        const double r2 = dot(p, p), above = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)),
+                     below = 1 + r2 * (k4 + r2 * (k5 + r2 * k6)), radial = above / below;
         const Vec2 q(p.x * radial + 2 * p1 * p.x * p.y + p2 * (r2 + 2 * p.x * p.x) + r2 * (s1 + r2 * s2),
                      p.y * radial + p1 * (r2 + 2 * p.y * p.y) + 2 * p2 * p.x * p.y + r2 * (s3 + r2 * s4));
-        if (tx == 0 && ty == 0) return q;
-        const Vec3 tilted = sensor * Vec3(q, 1);
-        return {tilted.x / tilted.z, tilted.y / tilted.z};
-    }
-    Mat2 jacobian(const Vec2& p) const {
-        const double step = 1e-6 * (1 + std::max(std::fabs(p.x), std::fabs(p.y)));
-        const Vec2 dx = ((*this)(p + Vec2(step, 0)) - (*this)(p - Vec2(step, 0))) / (2 * step);
-        const Vec2 dy = ((*this)(p + Vec2(0, step)) - (*this)(p - Vec2(0, step))) / (2 * step);
-        return {dx, dy};
+
+        // The radial factor and the prism depend on r2 alone, whose gradient is 2 p.
+        const double rise =
+            (k1 + r2 * (2 * k2 + r2 * 3 * k3) - radial * (k4 + r2 * (2 * k5 + r2 * 3 * k6))) / below;
+        const Vec2 by_r2 = rise * p + Vec2(s1 + 2 * s2 * r2, s3 + 2 * s4 * r2);
+        const double mixed = 2 * (p1 * p.x + p2 * p.y);
+        const Mat2 derivative(Vec2(radial + 2 * p1 * p.y + 6 * p2 * p.x, mixed) + 2 * p.x * by_r2,
+                              Vec2(mixed, radial + 6 * p1 * p.y + 2 * p2 * p.x) + 2 * p.y * by_r2);
+        if (!tilted) return {q, derivative};
+        const Vec3 seen = sensor * Vec3(q, 1);
+        const Vec2 at(seen.x / seen.z, seen.y / seen.z);
+        const auto onto = [&](const Vec2& move) {
+            const Vec3 moved = sensor * Vec3(move, 0);
+            return (Vec2(moved) - moved.z * at) / seen.z;
+        };
+        return {at, {onto(derivative[0]), onto(derivative[1])}};
     }
 
     std::array<double, 14> k;
+    bool tilted;
     Mat3 sensor;
 };
 
-/// The p with distorted(p) = q, reached from `start` by steps that keep the map's orientation.
-std::optional<Vec2> undistort(const Distortion& distorted, const Vec2& q, Vec2 start) {
+/// The p with distorted(p) = q up to a last step of `rest`, reached from `start` by steps that keep the map's
+/// orientation.
+std::optional<Vec2> undistort(const Distortion& distorted, const Vec2& q, Vec2 start, double rest) {
     for (int step = 0; step < kLensSteps; ++step) {
-        const Mat2 jacobian = distorted.jacobian(start);
+        const auto [there, jacobian] = distorted.with_jacobian(start);
         if (!(glm::determinant(jacobian) > 0)) return std::nullopt;
-        const Vec2 by = glm::inverse(jacobian) * (q - distorted(start));
+        const Vec2 by = glm::inverse(jacobian) * (q - there);
         start += by;
         if (!std::isfinite(start.x + start.y)) return std::nullopt;
-        if (length(by) <= kLensAtRest * (1 + length(start))) return start;
+        if (length(by) <= rest * (1 + length(start))) return start;
     }
-    // Rounding of the differences may keep the steps from vanishing.
+    // Rounding may keep the steps from vanishing.
     if (length(q - distorted(start)) > 1e-11 * (1 + length(q))) return std::nullopt;
     return start;
 }
 
 std::optional<Vec3> unproject_pinhole(const OpencvLens& lens, const Vec2& q) {
     const Distortion distorted(lens);
+    const Vec2 from = distorted(Vec2(0));
     Vec2 p(0);
-    for (int k = 0; k <= kWaypoints; ++k) {
-        const Vec2 way = distorted(Vec2(0)) + (1.0 * k / kWaypoints) * (q - distorted(Vec2(0)));
-        const std::optional<Vec2> next = undistort(distorted, way, p);
+    for (int k = 1; k <= kWaypoints; ++k) {
+        const Vec2 way = from + (1.0 * k / kWaypoints) * (q - from);
+        const std::optional<Vec2> next =
+            undistort(distorted, way, p, k < kWaypoints ? kWaypointAtRest : kLensAtRest);
         if (!next) return std::nullopt;
         p = *next;
     }
