@@ -28,7 +28,14 @@ std::vector<Vec3> points_of(const Doubles& array, const std::string& name) {
     return {first, first + array.shape(0)};
 }
 
+void refuse_masked(py::handle given) {
+    if (!py::hasattr(given, "mask") || !py::hasattr(given, "fill_value")) return;
+    if (given.attr("mask").attr("any")().cast<bool>())
+        throw UsageError("an array with masked values is given: leave them out, or fill them with filled()");
+}
+
 py::array array_from(const py::object& object, const std::string& name) {
+    refuse_masked(object);
     py::array array = py::array::ensure(object);
     if (!array) throw py::type_error(name + " is no array");
     return array;

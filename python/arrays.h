@@ -10,8 +10,12 @@
 
 namespace trilens::python {
 
-/// Arrays of any real type and layout; what is not float64 in C order is converted. Complex ones are refused
-/// with UsageError, where numpy would leave their imaginary part out.
+/// Throws UsageError for a numpy array of which values are masked: nothing here could leave them out.
+void refuse_masked(py::handle given);
+
+/// Arrays of any real type and layout; what is not float64 in C order is converted. Complex ones and those
+/// with masked values are refused with UsageError, where numpy would leave the imaginary part or the mask
+/// out.
 class Doubles : public py::array_t<double, py::array::c_style | py::array::forcecast> {
   public:
     using Plain = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -24,7 +28,7 @@ using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcec
 /// An N x 3 array as points. Throws UsageError, naming `name`, for other shapes.
 std::vector<Vec3> points_of(const Doubles& array, const std::string& name);
 
-/// Anything that numpy makes an array of; else Python's TypeError.
+/// Anything that numpy makes an array of; else Python's TypeError. Throws UsageError for masked values.
 py::array array_from(const py::object& object, const std::string& name);
 
 /// An array of ids of any shape, in C order. Throws UsageError, naming `name`, for numbers that are none.
@@ -92,6 +96,7 @@ struct pybind11::detail::type_caster<trilens::python::Doubles> {
         if (!any) return false;
         if (any.dtype().kind() == 'c')
             throw trilens::UsageError("an array of complex numbers is given for real ones");
+        trilens::python::refuse_masked(given);
         if (!plain.load(given, convert)) return false;
         value = trilens::python::Doubles(static_cast<trilens::python::Doubles::Plain&>(plain));
         return true;

@@ -16,9 +16,9 @@ using Name = std::optional<std::string>;
 using PhotoFile = std::filesystem::path;
 using Photo = std::variant<std::shared_ptr<HeldImage>, PhotoFile>;
 
-UnwrapPhoto photo_from(const Photo& given) {
+UnwrapPhoto photo_from(const Photo& given, const std::string& name) {
     if (const auto* held = std::get_if<std::shared_ptr<HeldImage>>(&given))
-        return photo_of((*held)->image, "photo");
+        return photo_of((*held)->image, name);
     return read_photo(std::get<PhotoFile>(given).string());
 }
 
@@ -89,11 +89,11 @@ void bind_unwrap_itself(RendererClass& renderer) {
                     throw UsageError("there is not one camera, mask or exposure for each photograph");
             std::vector<UnwrapPhoto> photos;
             for (std::size_t i = 0; i < given.size(); ++i) {
-                UnwrapPhoto one = photo_from(given[i]);
+                UnwrapPhoto one = photo_from(given[i], "photo");
                 one.camera = cameras             ? find_camera(self.scene(), (*cameras)[i])
                              : given.size() == 1 ? self.scene().own_camera
                                                  : i;
-                if (masks) one.mask = photo_from((*masks)[i]).picture;
+                if (masks) one.mask = photo_from((*masks)[i], "mask").picture;
                 if (exposures) one.exposure = (*exposures)[i];
                 one.white = white;
                 photos.push_back(std::move(one));
@@ -321,7 +321,7 @@ void bind_anamorph(py::module_& module) {
            const std::optional<std::array<double, 4>>& window, const Name& optic, const Name& camera,
            bool verify, const std::optional<PhotoFile>& file, const py::object& progress) {
             AnamorphRequest request;
-            request.picture = photo_from(picture).picture;
+            request.picture = photo_from(picture, "picture").picture;
             request.page = find_mesh(renderer.scene(), page);
             request.optic = optic_index(renderer, optic);
             request.window = window;

@@ -65,12 +65,13 @@ AnamorphRequest request_of(const AnamorphOptions& options, const Renderer& rende
     return request;
 }
 
-void warn_of(const Anamorph& made, Console& console) {
+void warn_of(const Anamorph& made, const AnamorphOptions& options, Console& console) {
     if (made.coverage < 0.995)
         console.warn(fmt::format(
-            "{:.1f} % of the window do not show the page over a mirror: the picture is cut there; "
-            "--fit finds the largest window that is whole",
-            100 * (1 - made.coverage)));
+            "{:.1f} % of the window do not show the page over a mirror: the picture is cut there; {}",
+            100 * (1 - made.coverage),
+            options.window.empty() ? "no window of the picture's shape that is whole was found"
+                                   : "--fit finds the largest window that is whole"));
     if (made.conflict > 0.01)
         console.warn(
             fmt::format("{:.1f} % of the window show places of the page a second time, which fit the larger "
@@ -97,7 +98,7 @@ Answer run(const AnamorphOptions& options, Console& console) {
     console.note_stage(fmt::format("made {} x {} dots from {} exact places", made.page.width,
                                    made.page.height, made.exact_places),
                        watch);
-    warn_of(made, console);
+    warn_of(made, options, console);
     write_page(options.output, made.page);
 
     Answer answer = name_output(options.output, console);

@@ -55,6 +55,15 @@ def test_a_picture_is_written_as_its_name_says(tmp_path):
     assert (tmp_path / "x.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01"
 
 
+def test_masked_values_are_refused():
+    points = np.ma.masked_array(np.zeros((3, 3)), np.eye(3) > 0)
+    with pytest.raises(trilens.UsageError, match="masked"):
+        trilens.Renderer(sphere()).project(points)
+    with pytest.raises(trilens.UsageError, match="masked"):
+        trilens.Image.from_arrays({"R": points.astype(np.float32)})
+    assert trilens.Image.from_arrays({"R": np.ma.masked_array(np.ones((2, 2), np.float32))}).size == (2, 2)
+
+
 def test_complex_numbers_are_refused():
     renderer = trilens.Renderer(sphere())
     with pytest.raises(trilens.UsageError, match="complex"):
