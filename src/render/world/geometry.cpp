@@ -35,7 +35,24 @@ int patch_resolution(const Surface& surface) {
     return resolution_within(surface, n, kMostFineFacets);
 }
 
+/// Whether every face is flat and its parameters are affine: its facets are the face itself.
+bool is_polyhedron(const Surface& surface) {
+    constexpr double kRounding = 1e-13;
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        if (!surface.is_flat(face)) return false;
+        const auto at = [&](const Vec2& uv) { return surface.eval_first_order(face, uv).position; };
+        const Vec3 origin = at({0, 0}), u = at({1, 0}) - origin, v = at({0, 1}) - origin;
+        const double far = length(origin) + length(u) + length(v);
+        const bool is_square = surface.domain(face) == FaceDomain::kSquare;
+        for (const Vec2& uv :
+             {Vec2(0.5, 0), Vec2(0, 0.5), Vec2(0.5, 0.5), Vec2(0.25, 0.25), is_square ? Vec2(1) : Vec2(0)})
+            if (!(length(at(uv) - (origin + uv.x * u + uv.y * v)) <= kRounding * far)) return false;
+    }
+    return true;
+}
+
 int fine_resolution(const Surface& surface) {
+    if (is_polyhedron(surface)) return 1;
     const double per_face = static_cast<double>(kFineFacets) /
                             (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
     const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
