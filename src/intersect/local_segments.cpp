@@ -92,17 +92,17 @@ Segments::Bits may_meet_here(const Segments& segments, const Box& box) {
 }
 
 std::uint64_t balls_met_here(const PatchBalls& balls, const RayStretch& ray) {
-    static_assert(PatchBalls::kMost % kWidth == 0);
+    static_assert(PatchBalls::kWidest % kWidth == 0);
     const Vector origin = vector(ray.origin), direction = vector(ray.direction);
     const Number from = number(ray.from), to = number(ray.to);
     std::uint64_t met = 0;
-    for (std::size_t first = 0; first < balls.count; first += kWidth) {
-        const Vector middle =
-            vector_at(balls.middle[0] + first, balls.middle[1] + first, balls.middle[2] + first);
+    for (std::size_t first = 0; first < balls.count(); first += kWidth) {
+        const auto row = [&](std::size_t number) { return hn::LoadU(kTag, balls.row(number) + first); };
+        const Vector middle{row(0), row(1), row(2)};
         const Vector off = minus(middle, origin);
         const Number nearest = hn::Min(hn::Max(dot(off, direction), from), to);
         const Vector away = minus(off, times(nearest, direction));
-        const Truth is_met = hn::Le(dot(away, away), hn::Load(kTag, balls.square + first));
+        const Truth is_met = hn::Le(dot(away, away), row(3));
         met |= std::uint64_t{bits_of(is_met)} << first;
     }
     return met;

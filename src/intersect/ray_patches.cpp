@@ -62,9 +62,10 @@ const PartPatches::Part& PartPatches::make(Id part) const {
     auto made = std::make_unique<Part>();
     const std::size_t count = grid.facets.size();
     made->patches.reserve(count);
+    made->balls = PatchBalls(count);
     for (std::size_t f = 0; f < count; ++f) {
         made->patches.push_back(make_ray_patch(surface_, grid, f));
-        made->balls.add(ball_of(made->patches.back()));
+        made->balls.set(f, ball_of(made->patches.back()));
     }
     // Another thread may have made the same meanwhile.
     const Part* known = nullptr;

@@ -2,13 +2,11 @@
 // strays from it; of a surface's parts they are made when a ray first comes near.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -38,17 +36,27 @@ RayPatch make_ray_patch(const Surface& surface, const SurfaceGrid& grid, std::si
 /// Holds the facet and what strays from it.
 Box box_of(const RayPatch& patch);
 
-/// A ball around each of some patches with its stray, many side by side.
-struct PatchBalls {
-    static constexpr std::size_t kMost = 64;
-    alignas(64) double middle[3][kMost] = {}, square[kMost];  // squares of radii; below zero: no ball
-    std::size_t count = 0;
+/// A ball around each of some patches with its stray, many side by side: the middles' x, y and z, and the
+/// squares of radii. Rows are as long as lanes need; beyond the last ball squares are below zero.
+class PatchBalls {
+  public:
+    static constexpr std::size_t kMost = 64, kWidest = 8;
 
-    PatchBalls() { std::fill(std::begin(square), std::end(square), -1.0); }
-    void add(const PointBall& ball) {
-        for (int k = 0; k < 3; ++k) middle[k][count] = ball.middle[k];
-        square[count++] = ball.radius * ball.radius;
+    PatchBalls() = default;
+    explicit PatchBalls(std::size_t count)
+        : count_(count), stride_((count + kWidest - 1) / kWidest * kWidest), rows_(kRows * stride_, -1.0) {}
+
+    void set(std::size_t number, const PointBall& ball) {
+        for (int k = 0; k < 3; ++k) rows_[static_cast<std::size_t>(k) * stride_ + number] = ball.middle[k];
+        rows_[3 * stride_ + number] = ball.radius * ball.radius;
     }
+    std::size_t count() const { return count_; }
+    const double* row(std::size_t number) const { return rows_.data() + number * stride_; }
+
+  private:
+    static constexpr std::size_t kRows = 4;
+    std::size_t count_ = 0, stride_ = 0;
+    std::vector<double> rows_;
 };
 
 /// A stretch of a ray, by distances along it.
