@@ -20,6 +20,9 @@ constexpr int kMostHalvings = 5, kMostCuts = 4;
 /// A quadratic may be off by this share of the tolerance, and of a path that carries less than the brightest
 /// by so much more of it.
 constexpr double kMostOff = 0.25, kFaintOff = 0.05;
+/// Beams that the plane cuts off are left flat, which loses some of their light, where it is this share of
+/// what is faint.
+constexpr double kFaintFlat = 0.05;
 /// A beam whose sides are straight to so many times that needs no look at its quadratic.
 constexpr double kNearlyStraight = 6;
 /// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, and its
@@ -213,7 +216,7 @@ struct PlaneBeams::Maker {
             for (std::size_t k = 0; k < 3; ++k)
                 at[k] = corners.end[k]->origin + height / fall * corners.end[k]->direction;
             const double area = 0.5 * length(cross(at[1] - at[0], at[2] - at[0]));
-            if (!(strength * corners.measure * fall < params.faint_light * area)) return false;
+            if (!(strength * corners.measure * fall < kFaintFlat * params.faint_light * area)) return false;
         }
         return falls;
     }
