@@ -157,7 +157,7 @@ struct LimitTracer::Data {
     };
     Candidates candidates(const Query& query, Reach reach) const;
     bool surely_meets_near(const Query& query, Id& patch) const;
-    bool meets(const Query& query, Id& blocker) const;
+    bool meets(const Ray& ray, double t_min, double t_max, Id& blocker) const;
     template <typename Use>
     void for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate, Use&& use) const;
 };
@@ -234,18 +234,20 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
 
 // Whether the ray surely meets `patch`, or one of the same part, which it then becomes.
 bool LimitTracer::Data::surely_meets_near(const Query& query, Id& patch) const {
-    const auto surely_meets = [&](Id number) {
-        const auto one = candidate(query.frame, this->patch(number), query.t_min);
-        if (one && query.surely_meets(*one)) patch = number;
-        return one && query.surely_meets(*one);
+    const auto surely_meets = [&](const RayPatch& one) {
+        const auto met = candidate(query.frame, one, query.t_min);
+        return met && query.surely_meets(*met);
     };
-    if (surely_meets(patch)) return true;
+    if (surely_meets(this->patch(patch))) return true;
     if (!by_part) return false;
-    const Id part = PartPatches::part_of(patch);
-    for (std::uint64_t left = balls_met(by_part->of(part).balls, query.stretch()); left != 0;
-         left &= left - 1)
-        if (surely_meets(PartPatches::number(part, static_cast<std::size_t>(std::countr_zero(left)))))
-            return true;
+    const Id number = PartPatches::part_of(patch);
+    const PartPatches::Part& part = by_part->of(number);
+    for (std::uint64_t left = balls_met(part.balls, query.stretch()); left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        if (!surely_meets(part.patches[i])) continue;
+        patch = PartPatches::number(number, i);
+        return true;
+    }
     return false;
 }
 
@@ -312,7 +314,11 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
 }
 
 // `blocker`: a patch that the ray before this one met, which is asked first, or kNone.
-bool LimitTracer::Data::meets(const Query& query, Id& blocker) const {
+bool LimitTracer::Data::meets(const Ray& ray, double t_min, double t_max, Id& blocker) const {
+    if (surface.has_closed_form()) return surface.meets(ray, t_min, t_max);
+    const std::optional<RayFrame> frame = make_ray_frame(ray);
+    if (!frame) return false;
+    const Query query{ray, *frame, t_min, t_max};
     if (blocker != kNone && surely_meets_near(query, blocker)) return true;
     const Candidates candidates = this->candidates(query, Reach::kAnyBefore);
     if (candidates.complete_to == -kUnbounded) {
@@ -321,32 +327,23 @@ bool LimitTracer::Data::meets(const Query& query, Id& blocker) const {
     }
     bool met = false;
     for (const Candidate& candidate : candidates.found) {
-        for_each_hit(query.ray, query.frame, candidate, [&](const SurfaceHit& hit) {
-            met = met || (hit.t > query.t_min && hit.t < query.t_max);
-        });
+        for_each_hit(ray, *frame, candidate,
+                     [&](const SurfaceHit& hit) { met = met || (hit.t > t_min && hit.t < t_max); });
         if (met) break;
     }
     return met;
 }
 
 bool LimitTracer::meets(const Ray& ray, double t_min, double t_max) const {
-    if (data_->surface.has_closed_form()) return data_->surface.meets(ray, t_min, t_max);
-    const std::optional<RayFrame> frame = make_ray_frame(ray);
     Id blocker = kNone;
-    return frame && data_->meets({ray, *frame, t_min, t_max}, blocker);
+    return data_->meets(ray, t_min, t_max, blocker);
 }
 
 Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits asked) const {
     Segments::Bits found = 0;
     Id blocker = kNone;
     for_each_of(may_meet(segments, data_->around) & asked, [&](std::size_t i) {
-        const Ray ray = segments.ray(i);
-        bool is_met = false;
-        if (data_->surface.has_closed_form())
-            is_met = data_->surface.meets(ray, 0, 1);
-        else if (const std::optional<RayFrame> frame = make_ray_frame(ray))
-            is_met = data_->meets({ray, *frame, 0, 1}, blocker);
-        if (is_met) found |= Segments::bit(i);
+        if (data_->meets(segments.ray(i), 0, 1, blocker)) found |= Segments::bit(i);
     });
     return found;
 }
