@@ -11,6 +11,7 @@
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "json/json.h"
+#include "radiosity/bake_progress.h"
 #include "radiosity/element_mesh.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_light.h"
@@ -24,9 +25,6 @@ namespace trilens {
 namespace {
 
 constexpr int kMostPasses = 24;
-/// Of the whole bake: until beams of lights with caustics are made, and until patches have exchanged their
-/// light.
-constexpr double kLightsShare = 0.1, kSolvingShare = 0.3;
 constexpr double kBytesPerFactor = sizeof(Id) + sizeof(double);
 /// Making form factors reciprocal holds both estimates, and what they are sorted in.
 constexpr double kMatrixCopies = 4;
@@ -58,34 +56,37 @@ struct PatchPass {
 class Baker {
   public:
     Baker(const World& world, const BakeRequest& request, const Progress& progress)
-        : world_(world), request_(request), progress_(progress), mesh_(world) {}
+        : world_(world), request_(request), clock_(progress), mesh_(world) {}
 
     Bake bake() {
         check();
         divide();
-        const DirectLight direct(world_, progress_.part(0, kLightsShare));
-        progress_.begin_stage("");
         const std::shared_ptr<const TriangleScene> triangles = mesh_.triangles();
         const FormFactors factors(triangles, params_of(request_.form_factors));
+        clock_.measure(factors, size());
+        clock_.begin_shadows();
+        const DirectLight direct(world_, clock_.stage());
         const PatchPass patches = solve(direct, *triangles, factors);
         VertexLight light(mesh_, direct, {factors, patches.solution.radiosity});
-        light.update(progress_.part(kSolvingShare, 0.5 * (1 - kSolvingShare)));
-        double done = 0.5 * (1 + kSolvingShare);
-        while (report_.passes < kMostPasses && halve(patches, light)) {
-            ++report_.passes;
-            light.update(progress_.part(done, 0.5 * (1 - done)));
-            done = 0.5 * (1 + done);
-        }
+        clock_.begin_corners();
+        do {
+            report_.vertices = light.vertices().size();
+            light.update(clock_.stage());
+        } while (report_.passes < kMostPasses && halve(patches, light));
         report_.coarse = count_of(too_coarse(patches, light, false));
         report_.vertices = light.vertices().size();
+        clock_.begin_check();
         check_vertices(*triangles, light, patches.solution.radiosity);
         finish(patches, light);
-        return {scene_with(light), std::move(report_)};
+        Bake bake{scene_with(light), std::move(report_)};
+        clock_.finish();
+        return bake;
     }
 
   private:
     void check() const;
     void divide();
+    BakeSize size() const;
     PatchPass solve(const DirectLight& direct, const TriangleScene& triangles, const FormFactors& factors);
     void check_matrix_memory(std::size_t sides) const;
     std::vector<char> too_coarse(const PatchPass& patches, const VertexLight& light, bool skips_small) const;
@@ -107,7 +108,7 @@ class Baker {
 
     const World& world_;
     const BakeRequest& request_;
-    const Progress& progress_;
+    BakeProgress clock_;
     ElementMesh mesh_;
     BakeReport report_;
 };
@@ -144,6 +145,13 @@ void Baker::divide() {
     report_.patches = mesh_.elements().size();
 }
 
+BakeSize Baker::size() const {
+    BakeSize size{report_.patches, VertexLight::count(mesh_), 0, request_.most_elements};
+    for (std::size_t e = 0; e < size.patches; ++e)
+        size.large += mesh_.longest_edge(e) > length_of(request_.smallest_size);
+    return size;
+}
+
 namespace {
 
 RadiosityProblem problem_of(const PatchLight& light, const std::vector<double>& area) {
@@ -175,7 +183,9 @@ void Baker::check_matrix_memory(std::size_t sides) const {
 PatchPass Baker::solve(const DirectLight& direct, const TriangleScene& triangles,
                        const FormFactors& factors) {
     PatchPass patches;
-    patches.light = patch_light(world_, direct, mesh_);
+    clock_.begin_patches();
+    patches.light = patch_light(world_, direct, mesh_, clock_.stage());
+    clock_.begin_exchange(kPointsPerSide * patches.light.sides.size());
     for (const double area : triangle_areas(triangles)) patches.area.insert(patches.area.end(), 2, area);
     const RadiosityProblem problem = problem_of(patches.light, patches.area);
     double power = 0;
@@ -194,14 +204,12 @@ PatchPass Baker::solve(const DirectLight& direct, const TriangleScene& triangles
                 side, [&](std::size_t i) { return factors.row(static_cast<Id>(i)); },
                 [](const FormFactorRow& made) { return made; });
         };
-        patches.solution =
-            shoot(problem, row, params, progress_.part(kLightsShare, kSolvingShare - kLightsShare));
+        patches.solution = shoot(problem, row, params, clock_.stage());
     } else {
         check_matrix_memory(factors.side_count());
-        const FormFactorMatrix matrix =
-            make_matrix(factors, progress_.part(kLightsShare, kSolvingShare - kLightsShare));
-        patches.solution =
-            gather(problem, made_reciprocal(matrix, patches.area), params, progress_.part(kSolvingShare, 0));
+        const FormFactorMatrix matrix = make_matrix(factors, clock_.stage());
+        clock_.begin_gathering();
+        patches.solution = gather(problem, made_reciprocal(matrix, patches.area), params, clock_.stage());
     }
     return patches;
 }
@@ -238,8 +246,12 @@ std::vector<char> Baker::too_coarse(const PatchPass& patches, const VertexLight&
 
 bool Baker::halve(const PatchPass& patches, const VertexLight& light) {
     const std::vector<char> marked = too_coarse(patches, light, true);
-    if (count_of(marked) == 0 || mesh_.count_after(marked) > request_.most_elements) return false;
+    HalvingPass pass{marked.size(), mesh_.count_after(marked), 1};
+    if (count_of(marked) == 0 || pass.after > request_.most_elements) return false;
+    pass.length = mesh_.longest_edge(marked) / length_of(request_.smallest_size);
+    clock_.begin_pass(pass, light.vertices().size(), light.vertices().size() - report_.vertices);
     mesh_.halve(marked);
+    ++report_.passes;
     return true;
 }
 

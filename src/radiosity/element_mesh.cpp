@@ -127,6 +127,13 @@ void ElementMesh::name_patches() {
     for (Id e = 0; e < elements_.size(); ++e) elements_[e].patch = e;
 }
 
+double ElementMesh::longest_edge(const std::vector<char>& marked) const {
+    double longest = 0;
+    for (std::size_t e = 0; e < marked.size(); ++e)
+        if (marked[e]) longest = std::max(longest, longest_edge(e));
+    return longest;
+}
+
 std::size_t ElementMesh::count_after(const std::vector<char>& halved) const {
     const std::map<Edge, Id> marked = marked_edges(halved);
     std::size_t count = elements_.size();

@@ -36,6 +36,8 @@ class ElementMesh {
     /// Of each corner of each element, a number of its place: elements meet where they have equal ones.
     const std::vector<IdTriple>& places() const { return places_; }
     double longest_edge(std::size_t element) const;
+    /// Of all that are marked.
+    double longest_edge(const std::vector<char>& marked) const;
 
     /// From now on the elements that there are now are patches.
     void name_patches();

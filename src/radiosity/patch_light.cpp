@@ -8,8 +8,6 @@
 namespace trilens {
 namespace {
 
-constexpr int kParts = 3;  // along a patch's edge: light and materials are looked at in the middle of each
-
 /// A point of a surface as a ray sees it that comes down on it.
 struct SeenPoint {
     Hit hit;
@@ -28,7 +26,7 @@ struct SeenPoint {
 PatchSide side_of_patch(const World& world, const DirectLight& direct, const RadiosityElement& patch,
                         bool is_back) {
     std::vector<ShadedPoint> points;
-    for (const Vec3& w : middles_of_parts(kParts))
+    for (const Vec3& w : middles_of_parts(kPartsPerEdge))
         points.push_back(
             {patch.parent,
              w.x * patch.barycentrics[0] + w.y * patch.barycentrics[1] + w.z * patch.barycentrics[2],
@@ -74,14 +72,19 @@ std::vector<Vec3> DirectLight::at(std::span<const ShadedPoint> points) const {
     return light;
 }
 
-PatchLight patch_light(const World& world, const DirectLight& direct, const ElementMesh& mesh) {
+PatchLight patch_light(const World& world, const DirectLight& direct, const ElementMesh& mesh,
+                       const Progress& progress) {
     PatchLight light;
+    LoopProgress done(progress, static_cast<double>(mesh.elements().size()));
     light.sides.resize(2 * mesh.elements().size());
     parallel_for(mesh.elements().size(), 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t e = from; e < to; ++e)
+        for (std::size_t e = from; e < to; ++e) {
+            done.stop_if_cancelled();
             for (const bool is_back : {false, true})
                 light.sides[side_of(static_cast<Id>(e), is_back)] =
                     side_of_patch(world, direct, mesh.elements()[e], is_back);
+            done.add(1);
+        }
     });
     for (std::size_t e = 0; e < mesh.elements().size(); ++e) {
         bool is_too_white = false;

@@ -48,7 +48,13 @@ struct PatchLight {
     std::size_t glossy = 0;        // elements whose materials reflect other than in the matt way
 };
 
-/// The elements as patches. The same for any number of threads.
-PatchLight patch_light(const World& world, const DirectLight& direct, const ElementMesh& mesh);
+/// Points of each side of a patch at which light and materials are looked at: the middles of its parts, of
+/// which kPartsPerEdge lie along an edge.
+inline constexpr int kPartsPerEdge = 3;
+inline constexpr std::size_t kPointsPerSide = std::size_t{kPartsPerEdge} * kPartsPerEdge;
+
+/// The elements as patches. The same for any number of threads. Throws Interrupted.
+PatchLight patch_light(const World& world, const DirectLight& direct, const ElementMesh& mesh,
+                       const Progress& progress = {});
 
 }  // namespace trilens

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
@@ -37,6 +38,80 @@ double way_done(double share, double tolerance) {
     return std::clamp(std::log(share) / std::log(tolerance), 0.0, 1.0);
 }
 
+/// How much of progressive refinement is done, by predicting the shots that are left: from the power that
+/// is unshot now, and from the time that shots have taken. A side's first shot is told from others, whose
+/// rows may be kept.
+class ShootingForecast {
+  public:
+    ShootingForecast(const RadiosityProblem& problem, double tolerance, const Progress& progress)
+        : problem_(problem), tolerance_(tolerance), progress_(progress), has_shot_(problem.area.size()) {}
+
+    /// These have shot, in so many seconds.
+    void add(const std::vector<Id>& shooters, double seconds) {
+        // Shots of one batch take one time each: many batches tell both kinds apart.
+        std::size_t first = 0;
+        for (const Id i : shooters) first += !std::exchange(has_shot_[i], char{1});
+        const double share = static_cast<double>(first) / static_cast<double>(shooters.size());
+        for (const auto& [at, kind] : {std::pair(share, &first_), std::pair(1 - share, &again_)}) {
+            if (!(at > 0.5)) continue;
+            kind->seconds += seconds;
+            kind->shots += static_cast<double>(shooters.size());
+        }
+        over_ += seconds;
+    }
+
+    /// `whole`: all power that there was, `left`: the share that is unshot.
+    void tell(const std::vector<Vec3>& unshot, const Vec3& whole, double left) {
+        constexpr double kBetween = 0.3;  // seconds
+        if (!progress_.report || (has_told_ && watch_.seconds() < kBetween)) return;
+        watch_ = {}, has_told_ = true;
+        const Counts shots = predicted(unshot, whole, left);
+        const double of_first = first_.each(), of_again = again_.shots > 0 ? again_.each() : 0;
+        const double ahead = shots.first * of_first + shots.again * of_again;
+        if (over_ > 0 && over_ + ahead > 0) progress_(over_ / (over_ + ahead));
+    }
+
+  private:
+    struct Speed {
+        double seconds = 0, shots = 0;
+        double each() const { return shots > 0 ? seconds / shots : 0; }
+    };
+    struct Counts {
+        double first = 0, again = 0;
+    };
+
+    /// The brightest sides whose shots leave no more than the tolerance, with what will be reflected to them.
+    Counts predicted(const std::vector<Vec3>& unshot, const Vec3& whole, double left) const {
+        std::vector<std::pair<double, Id>> powers;
+        double sum = 0;
+        for (Id i = 0; i < unshot.size(); ++i) {
+            const double share = problem_.area[i] * share_of(unshot[i], whole);
+            if (share > 0) powers.emplace_back(share, i);
+            sum += share;
+        }
+        std::sort(powers.begin(), powers.end());
+        double kept = 0;
+        std::size_t k = 0;
+        while (k < powers.size() && (kept + powers[k].first) * left <= kReflected * tolerance_ * sum)
+            kept += powers[k++].first;
+        Counts counts;
+        for (; k < powers.size(); ++k) (has_shot_[powers[k].second] ? counts.again : counts.first)++;
+        return counts;
+    }
+
+    /// What is left to sides of the power that there is now, as more is reflected to them.
+    static constexpr double kReflected = 0.5;
+
+    const RadiosityProblem& problem_;
+    double tolerance_;
+    const Progress& progress_;
+    std::vector<char> has_shot_;
+    Speed first_, again_;
+    double over_ = 0;
+    Stopwatch watch_;
+    bool has_told_ = false;
+};
+
 /// The sides with most unshot power, most first.
 std::vector<Id> brightest(const RadiosityProblem& problem, const std::vector<Vec3>& unshot) {
     std::vector<Id> sides;
@@ -70,13 +145,15 @@ RadiositySolution shoot(const RadiosityProblem& problem, const RowSource& rows, 
     std::vector<Vec3> unshot = problem.exitance;
     const Vec3 whole = power_of(problem, problem.exitance);
     std::size_t shots = 0;
+    ShootingForecast forecast(problem, params.tolerance, progress);
     while (true) {
         solution.unshot = power_of(problem, unshot);
         const double left = share_of(solution.unshot, whole);
         solution.steps.push_back({shots, left});
         solution.converged = left <= params.tolerance;
         progress.stop_if_cancelled();
-        progress(way_done(left, params.tolerance));
+        forecast.tell(unshot, whole, left);
+        const Stopwatch watch;
         if (solution.converged || shots >= params.most_steps) return solution;
         const std::vector<Id> shooters = brightest(problem, unshot);
         if (shooters.empty()) return solution;
@@ -99,6 +176,7 @@ RadiositySolution shoot(const RadiosityProblem& problem, const RowSource& rows, 
                 unshot[j] += reflected;
             }
         }
+        forecast.add(shooters, watch.seconds());
     }
 }
 

@@ -91,6 +91,13 @@ RadiosityVertex vertex_of_group(const CornerGroup& group, const ElementMesh& mes
 
 }  // namespace
 
+std::size_t VertexLight::count(const ElementMesh& mesh) {
+    std::size_t count = 0;
+    for (const std::vector<SideCorner>& corners : corners_by_place(mesh))
+        count += grouped(corners, mesh).size();
+    return count;
+}
+
 void VertexLight::update(const Progress& progress) {
     const std::size_t before = vertices_.size();
     vertex_of_.assign(2 * mesh_.elements().size(), IdTriple{kNone, kNone, kNone});

@@ -40,6 +40,9 @@ class VertexLight {
     VertexLight(const ElementMesh& mesh, const DirectLight& direct, const PatchRadiosity& patches)
         : mesh_(mesh), direct_(direct), patches_(patches) {}
 
+    /// How many vertices a mesh has.
+    static std::size_t count(const ElementMesh& mesh);
+
     /// Finds the vertices that the mesh has now, and the light at those that are new. The same for any number
     /// of threads. Throws Interrupted; `progress` says how many of the new ones are done.
     void update(const Progress& progress = {});

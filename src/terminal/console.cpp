@@ -129,7 +129,9 @@ Progress Console::progress(const std::string& job) {
     stop_at_once(false);
     last_done_ = -1;
     told_done_ = 0;
-    begin_stage("", 1);
+    stage_.clear();
+    stage_from_ = 0, stage_until_ = 1;
+    time_left_ = {};
     started_ = last_time_ = std::chrono::steady_clock::now();
     Progress progress;
     progress.cancel = &stop_requested();
@@ -142,7 +144,10 @@ Progress Console::progress(const std::string& job) {
 /// Each goes at a speed of its own, of which what was before tells nothing.
 void Console::begin_stage(const std::string& what, double until) {
     const std::lock_guard lock(mutex_);
+    if (what != stage_) last_done_ = -1;
     stage_ = what;
+    // A stage that runs to the job's end is told in shares of the job's time.
+    if (until >= 1 && stage_until_ >= 1) return;
     stage_from_ = told_done_, stage_until_ = until;
     time_left_ = {};
 }
@@ -156,17 +161,20 @@ void Console::draw(const std::string& job, double done) {
     const double length = stage_until_ - stage_from_,
                  of_stage = length > 0 ? (done - stage_from_) / length : 1;
     const std::optional<double> left = time_left_.at(std::clamp(of_stage, 0.0, 1.0), elapsed);
+    const bool is_of_stage = !stage_.empty() && stage_until_ < 1;
     const double step = options_.progress == ProgressStyle::kBar ? 0.01 : 0.1;
+    const double most_silent = options_.progress == ProgressStyle::kBar    ? 0.5
+                               : options_.progress == ProgressStyle::kJson ? 1
+                                                                           : std::max(2.0, elapsed / 20);
 
     // Short jobs finish without a word: a plain or JSON line is worth it after two seconds.
     if (options_.progress != ProgressStyle::kBar && elapsed < 2) return;
-    if (done < 1 && done - last_done_ < step && silent < 30) return;
+    if (done < 1 && done - last_done_ < step && silent < most_silent) return;
     last_done_ = done;
     last_time_ = now;
     const int percent = static_cast<int>(100 * done);
     const std::string seconds =
-                          left ? fmt::format(", {:.0f} s left{}", *left, stage_.empty() ? "" : " of that")
-                               : "",
+                          left ? fmt::format(", {:.0f} s left{}", *left, is_of_stage ? " of that" : "") : "",
                       text = stage_.empty() ? job : job + ": " + stage_;
     if (options_.progress == ProgressStyle::kJson) {
         const auto quoted = [](const std::string& words) {
@@ -175,7 +183,7 @@ void Console::draw(const std::string& job, double done) {
         const std::string stage = stage_.empty() ? "" : "\"stage\":" + quoted(stage_) + ",";
         std::fprintf(stderr, "{\"t\":%.1f,\"job\":%s,%s\"done\":%.3f,\"eta_s\":%s}\n", elapsed,
                      quoted(job).c_str(), stage.c_str(), done,
-                     left && stage_.empty() ? fmt::format("{:.1f}", *left).c_str() : "null");
+                     left && !is_of_stage ? fmt::format("{:.1f}", *left).c_str() : "null");
     } else if (options_.progress == ProgressStyle::kPlain) {
         std::fprintf(stderr, "trilens: %s %d %%%s\n", text.c_str(), percent, seconds.c_str());
     } else if (done >= 1) {

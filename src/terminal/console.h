@@ -66,7 +66,8 @@ class Console {
     /// With -v: what was done since the watch was started, and in how many seconds.
     void note_stage(const std::string& what, const Stopwatch& watch);
 
-    /// A Progress that draws `job` here: a bar on a terminal, else a line every 10 % or 30 s.
+    /// A Progress that draws `job` here: a bar on a terminal, else a line every 10 % and where a
+    /// stage begins, and where there was none for a twentieth of the time so far.
     Progress progress(const std::string& job);
     Warn warner() {
         return [this](const std::string& message) { warn(message); };

@@ -124,6 +124,29 @@ Picture picture_by(const World& world, Engine engine) {
 
 }  // namespace
 
+TEST_CASE("a bake names its stages, its share never falls and ends at 1", "[radiosity][law]") {
+    const auto world = world_from("cornell", cornell_text(kBalls), 6);
+    std::vector<double> shares;
+    std::vector<std::string> stages;
+    Progress progress;
+    progress.report = [&](double share) { shares.push_back(share); };
+    progress.stage = [&](const std::string& name, double until) {
+        CHECK(until == 1);
+        if (stages.empty() || stages.back() != name) stages.push_back(name);
+    };
+    BakeRequest request = coarse_request();
+    request.hemicube_resolution = 16;
+    request.patch_size = 0.2;
+    request.smallest_size = 0.1;
+    bake_light(*world, request, progress);
+    CHECK(stages ==
+          std::vector<std::string>{"shadows", "light on patches", "exchange", "light at corners", "check"});
+    CHECK(std::is_sorted(shares.begin(), shares.end()));
+    CHECK(shares.front() < 0.2);
+    CHECK(shares.back() == 1);
+    CHECK(shares[shares.size() - 2] < 1);
+}
+
 TEST_CASE("baked light is that of a path tracer", "[radiosity][law]") {
     const auto world = world_from("cornell", cornell_text(), 4);
     const Bake bake = bake_light(*world, {});

@@ -1,6 +1,10 @@
 // The radiosity equation: furnaces, both solvers, the balance of power, and threads.
+#include <chrono>
 #include <cmath>
 #include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "base/util/parallel.h"
 #include "radiosity/bake.h"
@@ -153,6 +157,38 @@ TEST_CASE("a solver that is told to stop does", "[radiosity]") {
                progress),
         Interrupted);
     CHECK_THROWS_AS(make_matrix(room.factors, progress), Interrupted);
+}
+
+TEST_CASE("progressive refinement foretells its time within a factor of two", "[radiosity][law]") {
+    Room room(7);
+    for (std::size_t s = 0; s < room.problem.area.size(); s += 2) {
+        room.problem.reflectance[s] = Vec3(0.5);
+        if (s < 40) room.problem.exitance[s] = Vec3(1);
+    }
+    // A side's first row takes a while, then it is there.
+    std::vector<FormFactorRow> made(room.problem.area.size());
+    const RowSource rows = [&](Id side) {
+        if (made[side].side.empty()) {
+            made[side] = room.factors.row(side);
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return made[side];
+    };
+    const Stopwatch watch;
+    std::vector<std::pair<double, double>> told;  // share, seconds
+    Progress progress;
+    progress.report = [&](double share) { told.emplace_back(share, watch.seconds()); };
+    shoot(room.problem, rows, {1e-3, 100000}, progress);
+    const double all = watch.seconds();
+    std::size_t looked = 0;
+    for (const auto& [share, seconds] : told) {
+        if (share < 0.1 || seconds > 0.9 * all) continue;
+        INFO(share << " after " << seconds << " s of " << all);
+        CHECK(seconds / share < 2 * all);
+        CHECK(seconds / share > 0.5 * all);
+        ++looked;
+    }
+    CHECK(looked > 0);
 }
 
 TEST_CASE("the convergence is a plot", "[radiosity]") {
