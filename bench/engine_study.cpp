@@ -51,7 +51,7 @@ struct SeenPicture {
 /// What all pixels of the film show; preparing the scene is not in the time.
 SeenPicture look(const World& world, const FrameParams& frame, const EngineChoice& engine) {
     const Film& film = world.scene.film;
-    const std::unique_ptr<Viewer> viewer = make_viewer(world, frame, engine, {});
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, frame, engine, Warn());
     const Stopwatch watch;
     SampleViews views;
     viewer->view({0, 0, film.width, film.height, 1}, views);

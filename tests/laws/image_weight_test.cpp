@@ -42,7 +42,7 @@ Tally compare(const World& world, int step) {
     Tally tally;
     const Film& film = world.scene.film;
     const PictureRequest truth = traced();
-    const std::unique_ptr<Viewer> viewer = make_viewer(world, truth.frame, truth.engine, {});
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, truth.frame, truth.engine, Warn());
     for (int y = step / 2; y < film.height; y += step)
         for (int x = step / 2; x < film.width; x += step) {
             SampleViews pixel;

@@ -1,11 +1,13 @@
 // Optics are drawn where on the film they can be seen and nowhere else: nothing of them is lost.
 #include "render/frame/frame.h"
 
+#include <atomic>
 #include <cstring>
 
 #include "base/raymesh/rasterize.h"
 #include "laws/worlds.h"
 #include "projector/projector.h"
+#include "render/engines/engine.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -76,6 +78,21 @@ TEST_CASE("an optic's window holds all samples that meet its facets, with the sa
             }
         }
     }
+}
+
+TEST_CASE("a viewer that nobody wants any more stops, while it is made and while it shows", "[laws]") {
+    const auto world = ball("1", kEyeAtFour);
+    std::atomic<bool> cancel = true;
+    const ViewerCallbacks callbacks{ignore, &cancel};
+    CHECK_THROWS_AS(make_viewer(*world, {}, Engine::kExact, callbacks), Interrupted);
+    cancel = false;
+    const auto viewer = make_viewer(*world, {}, Engine::kExact, callbacks);
+    const SampleGrid grid{0, 0, kWindowWidth, kWindowHeight, 1};
+    SampleViews views;
+    viewer->view(grid, views);
+    CHECK(!views.samples.empty());
+    cancel = true;
+    CHECK_THROWS_AS(viewer->view(grid, views), Interrupted);
 }
 
 TEST_CASE("an optic's window is about as large as the optic looks, or all of the film", "[laws][law]") {

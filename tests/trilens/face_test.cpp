@@ -9,7 +9,9 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <random>
+#include <string>
 
 #include "support/test.h"
 
@@ -56,6 +58,33 @@ std::string shipped(const std::string& name) {
 }
 
 }  // namespace
+
+TEST_CASE("the making of many optics' surfaces is told, and stops when it is cancelled", "[trilens]") {
+    std::string meshes;
+    for (int i = 0; i < 9; ++i)
+        meshes += (i > 0 ? "," : "") + std::string(R"({"role": "optic", "material": "chrome", "resolution": 2,
+            "primitive": {"type": "sphere", "center": [)") +
+                  std::to_string(i - 4) + R"(, 0, 0], "radius": 0.4}})";
+    const Renderer renderer(parse_scene(
+        R"({"version": 1, "film": {"width": 16, "height": 4},
+            "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 0, 9], "at": [0, 0, 0]}}],
+            "materials": [{"name": "chrome", "metallicFactor": 1, "roughnessFactor": 0}], "meshes": [)" +
+        meshes + "]}"));
+    std::atomic<bool> cancel = false;
+    std::string stage;
+    std::map<std::string, std::size_t> told;
+    Progress progress;
+    progress.report = [&](double) { cancel = ++told[stage] == 5 && !stage.empty(); };
+    progress.stage = [&](const std::string& what, double) { stage = what; };
+    progress.cancel = &cancel;
+    CHECK_THROWS_AS(renderer.draw({}, progress), Interrupted);
+    CHECK(told["surfaces of 9 optics"] == 5);
+    CHECK(told[""] == 0);
+    cancel = false;
+    renderer.draw({}, progress);
+    CHECK(told["surfaces of 9 optics"] > 9);
+    CHECK(told[""] > 0);
+}
 
 TEST_CASE("a picture that is written while it is drawn has the bytes of one that was held", "[trilens]") {
     namespace fs = std::filesystem;

@@ -50,10 +50,21 @@ class Viewer {
 /// engines that show something else, and a proof (certify) of engines whose facets stand for no exact paths.
 void check_engine(const FrameParams& frame, Engine engine);
 
-/// A viewer of `world`, which must outlive it. Throws as check_engine, and InputError where the camera cannot show what the scene
-/// has, or the optics have too many facets to hold.
+/// What the maker of a viewer hears, and whether it still wants it: once it is cancelled the viewer, too,
+/// throws Interrupted.
+struct ViewerCallbacks {
+    Warn warn = {};
+    const std::atomic<bool>* cancel = nullptr;
+};
+
+/// A viewer of `world`, which must outlive it. Throws as check_engine, and InputError where the camera cannot
+/// show what the scene has, or the optics have too many facets to hold.
 std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                                    const Warn& warn);
+                                    const ViewerCallbacks& callbacks);
+inline std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame,
+                                           const EngineChoice& engine, const Warn& warn) {
+    return make_viewer(world, frame, engine, ViewerCallbacks{warn});
+}
 
 // Views through facets: the two projectors, and Embree on the rays of the same facets.
 

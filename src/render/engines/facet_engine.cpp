@@ -294,7 +294,10 @@ void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
     const FacetSamples owned = rasterize_facets(frame_.camera.mesh, grid);
     view_objects(owned, grid, views);
     set_initial_media(frame_.camera_media, views);
-    for (std::size_t i = 0; i < frame_.optics.size(); ++i) view_optic(i, owned, grid, views);
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i) {
+        frame_.stop_if_cancelled();
+        view_optic(i, owned, grid, views);
+    }
     view_rims(grid, views);
     if (redraws_direct_) redraw_direct(owned, grid, views);
     if (draw_volumes_) views.volumes.assign(grid.size(), SampleVolumes());
@@ -303,6 +306,7 @@ void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
     ends.reserve(frame_.optics.size());
     std::vector<Id> traced;
     for (std::size_t i = 0; i < frame_.optics.size(); ++i) {
+        frame_.stop_if_cancelled();
         ends.push_back(draw_optic_paths(
             {world_, static_cast<Id>(i), draw_paths_, draw_volumes_ ? &draw_volumes_ : nullptr,
              frame_.optics[i], nested_[i].get(), grid, part_in(grid, windows_[i])},

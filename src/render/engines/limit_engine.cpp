@@ -27,7 +27,8 @@ void check_engine(const FrameParams& frame, Engine engine) {
 }
 
 std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                                    const Warn& warn) {
+                                    const ViewerCallbacks& callbacks) {
+    const Warn& warn = callbacks.warn;
     check_engine(frame, engine.engine);
     prepare_shadows(world);
     if (has_caustics(world)) warn_of_lost_light(world, caustic_lights(world), warn);
@@ -41,6 +42,7 @@ std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame
         params.rays = CornerRays::kInterpolated;
     Frame placed = make_frame(world, params, warn);
     warn_of_unsure_media(world, placed.camera_media, warn);
+    placed.cancel = callbacks.cancel;
     return make_facet_viewer(world, std::move(placed), engine);
 }
 

@@ -45,6 +45,7 @@ class OutlineFinder {
   public:
     OutlineFinder(const World& world, const Frame& frame, std::size_t optic)
         : surface_(*world.optics[optic].surface),
+          frame_(frame),
           framed_(frame.optics[optic]),
           camera_(frame.camera),
           grid_(framed_.film_grid ? framed_.film_grid->grid : framed_.facets->grid()),
@@ -70,6 +71,7 @@ class OutlineFinder {
     std::optional<OutlineEdge> edge_at(const EdgeSide& side, double off) const;
 
     const Surface& surface_;
+    const Frame& frame_;
     const FramedOptic& framed_;
     const Camera& camera_;
     const SurfaceGrid& grid_;  // of the film, where the camera is not linear
@@ -156,6 +158,7 @@ std::vector<double> OutlineFinder::strays_at_points(const std::vector<char>& ask
     std::vector<double> of_facet(grid_.facets.size(), 0);
     parallel_for(of_facet.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t f = from; f < to; ++f) {
+            frame_.stop_if_cancelled();
             const IdTriple& corners = grid_.facets[f];
             if (std::any_of(corners.begin(), corners.end(),
                             [&](Id corner) { return asked[grid_.corner_point[corner]] != 0; }))

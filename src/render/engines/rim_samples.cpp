@@ -100,6 +100,7 @@ OpticRims make_rims(const World& world, const Frame& frame, double limit) {
     rims.limit = limit;
     bool any = false;
     for (std::size_t i = 0; i < frame.optics.size(); ++i) {
+        frame.stop_if_cancelled();
         rims.edges.push_back(optic_outline(world, frame, i));
         for (const OutlineEdge& edge : rims.edges[i])
             if (is_off(edge, limit))
@@ -110,9 +111,13 @@ OpticRims make_rims(const World& world, const Frame& frame, double limit) {
     // A sample near one optic's outline, or where two cross, may see another optic.
     any = any || limit != kAnyError || frame.optics.size() > 1;
     rims.facets.resize(frame.optics.size());
-    for (std::size_t i = 0; any && i < frame.optics.size(); ++i)
-        rims.facets[i] = std::make_unique<FacetLookup>(frame.optics[i].facets->grid(),
-                                                       world.optics[i].surface->face_count());
+    parallel_for(any ? frame.optics.size() : 0, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            frame.stop_if_cancelled();
+            rims.facets[i] = std::make_unique<FacetLookup>(frame.optics[i].facets->grid(),
+                                                           world.optics[i].surface->face_count());
+        }
+    });
     return rims;
 }
 

@@ -1,12 +1,14 @@
 // Which facet of a grid holds a parameter position.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
+#include "base/util/error.h"
 #include "camera/model/camera_model.h"
 #include "paths/facets/optic_paths.h"
 #include "paths/first/corner_rays.h"
@@ -91,8 +93,13 @@ struct Frame {
     std::vector<FramedOptic> optics;  // as World::optics
     double max_error = 0;             // as RenderSettings, or kAnyError
     FacetUse facets = FacetUse::kAll;
-    bool certify = false;  // as FrameParams
-    bool fit_all = false;  // see DivideParams; for lines that run on from facet to facet
+    bool certify = false;                       // as FrameParams
+    bool fit_all = false;                       // see DivideParams; for lines that run on from facet to facet
+    const std::atomic<bool>* cancel = nullptr;  // Progress::cancel of what is drawn
+
+    void stop_if_cancelled() const {
+        if (cancel && cancel->load(std::memory_order_relaxed)) throw Interrupted();
+    }
 };
 
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.

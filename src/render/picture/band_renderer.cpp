@@ -20,7 +20,10 @@ namespace {
 // Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
 constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
 constexpr std::size_t kMostKeys = 1u << 20;  // the same where samples have no record but a key
-constexpr std::size_t kBandsAtOnce = 3;      // on their way: seen, shaded, taken
+/// Facets of many optics take a while: pictures of them have so many bands at least, of which progress tells.
+constexpr std::size_t kManyOptics = 32;
+constexpr int kBandsOfMany = 24;
+constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
 constexpr std::size_t kPixelsPerTask = 256, kColoursPerTask = 1024;
 constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 // Of a drawing, until its pixels are shaded; then the last of them are taken.
@@ -321,8 +324,9 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     const auto& sink = output.sink;  // no structured binding: Clang 14 does not capture one
     const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
     const bool by_fragments = makes_fragments(world, viewer, request, side);
-    const int rows =
+    int rows =
         band_rows(static_cast<std::size_t>(width * side * side), by_fragments ? kMostKeys : kMostBandSamples);
+    if (world.optics.size() >= kManyOptics) rows = std::min(rows, std::max(1, height / kBandsOfMany));
     const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
     const std::size_t slots = std::min({bands, kBandsAtOnce, static_cast<std::size_t>(thread_count())});
 

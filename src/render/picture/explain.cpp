@@ -60,7 +60,7 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     explained.x = x;
     explained.y = y;
     const SampleGrid grid{x, y, x + 1, y + 1, 1};
-    const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, {});
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, Warn());
     SampleViews shown;
     viewer->view(grid, shown);
     const SampleView& view = shown.samples.front();

@@ -209,6 +209,9 @@ void collect_strip(const std::vector<Channel>& channels, int first, int rows, Im
 /// Of the job, where lights have caustics that are not known yet: while their beams are made, and gathered on
 /// what is seen.
 constexpr double kBeamsShare = 0.2, kGatheringShare = 0.3;
+/// Of the job, where there are many optics.
+constexpr double kOpticsShare = 0.3;
+constexpr std::size_t kOpticsTold = 8;
 /// Rows of a picture that say which faces are seen, at most, and how far apart they are, at least; what
 /// others show beside is gathered while they are drawn.
 constexpr int kRowsLookedAt = 16, kRowsApart = 12;
@@ -233,6 +236,21 @@ std::vector<ReceiverSide> seen_faces(const ReceiverFaces& faces, Viewer& viewer,
         for (const PathEnd& end : views.ends) add(end.hit, end.ray);
     }
     return {seen.begin(), seen.end()};
+}
+
+/// Many optics take a while to make, of which the user is told; returns the rest of the progress.
+Progress prepare_many_optics(const World& world, const PictureRequest& request, const Progress& progress) {
+    if (world.optics.size() < kOpticsTold) return progress;
+    const Engine engine = request.engine.engine;
+    OpticNeeds needs;
+    needs.resolution = request.frame.resolution;
+    needs.facets = engine != Engine::kLimitTruth;
+    needs.traced = engine == Engine::kFacetsTruth;
+    needs.projected = needs.facets && !needs.traced;
+    needs.exact_rays = follows_paths(engine);
+    prepare_optics(world, needs, progress.part(0, kOpticsShare));
+    progress.begin_stage("");
+    return progress.part(kOpticsShare, 1 - kOpticsShare);
 }
 
 /// Makes the beams of lights with caustics; returns the rest of the progress.
@@ -270,8 +288,9 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;
-    const Progress after_beams = prepare_caustics(world, progress);
-    const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, warn);
+    const Progress after_beams = prepare_caustics(world, prepare_many_optics(world, request, progress));
+    const std::unique_ptr<Viewer> viewer =
+        make_viewer(world, request.frame, request.engine, ViewerCallbacks{warn, progress.cancel});
     const Progress after_gathering = gather_seen(world, *viewer, layers, after_beams);
     const double share_of_marks = world.scene.points.empty() ? 0 : kShareOfMarks;
     if (share_of_marks > 0) after_gathering.begin_stage("images of points", share_of_marks);

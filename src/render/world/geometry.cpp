@@ -247,6 +247,22 @@ void prepare_shadows(const World& world, const Progress& progress) {
     if (has_caustics(world)) caustic_lights(world, progress);
 }
 
+void prepare_optics(const World& world, const OpticNeeds& needs, const Progress& progress) {
+    if (needs.facets) check_facet_count(world, needs.resolution);
+    const std::size_t count = world.optics.size();
+    progress.begin_stage("surfaces of " + std::to_string(count) + " optics");
+    for (std::size_t i = 0; i < count; ++i) {
+        progress.stop_if_cancelled();
+        progress(static_cast<double>(i) / static_cast<double>(count));
+        if (needs.exact_rays) limit_tracer(world, i);
+        if (!needs.facets) continue;
+        const auto facets = optic_facets(world, i, grid_resolution(world.optics[i], needs.resolution));
+        if (needs.projected) facets->prepared();
+        if (needs.traced) facets->tracer();
+    }
+    progress(1);
+}
+
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n) {
     OpticGeometry& kept = *world.geometry->optic[optic];
     const std::lock_guard lock(kept.mutex);

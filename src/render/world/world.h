@@ -150,6 +150,17 @@ void prepare_shadows(const World& world, const Progress& progress = {});
 /// it.
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n);
 
+/// What pictures ask of each optic.
+struct OpticNeeds {
+    int resolution = 0;  // of the facets; 0: each optic's own
+    bool facets = false, projected = false, traced = false;
+    bool exact_rays = false;
+};
+
+/// Makes it ahead, optic by optic, which else the first picture makes as it goes. What is there already
+/// stays. Throws Interrupted soon after `progress` says so, and InputError as check_facet_count.
+void prepare_optics(const World& world, const OpticNeeds& needs, const Progress& progress);
+
 // The lights of a world whose light is followed over optics.
 
 /// Beams of the scene's lights.
