@@ -184,7 +184,9 @@ TEST_CASE("what a designed mirror shows, traced, is as far from the wish as it s
     const std::vector<SceneOverride> small{{"/film", R"({"width": 96, "height": 53, "spp": 1})"}};
     const Scene scene = parse_scene(design_scene(wish, design), "", small);
     CHECK(scene.warnings.empty());
-    const Renderer renderer(scene);
+    std::vector<std::string> said;
+    const Renderer renderer(scene, [&](const std::string& warning) { said.push_back(warning); });
+    CHECK(said.empty());
     PictureRequest request;
     request.engine = Engine::kLimitTruth;
     request.layers.layers = {"reflect", "position"};

@@ -213,7 +213,8 @@ Design design_mirror(const DesignWish& wish, const DesignRequest& request = {},
 /// dozen of them each way; `design` must have it.
 Design design_of_sphere(const DesignWish& wish, const Design& design);
 
-/// Its control net in the world, whose limit surface it is (no boundary interpolated).
+/// Its control net in the world, whose limit surface it is (no boundary interpolated; the faces of the rim,
+/// which have none, are holes).
 Cage design_cage(const DesignWish& wish, const Design& design);
 
 /// A scene with the mirror or the lens (a closed body of six B-spline patches), the eye as its camera, and

@@ -126,6 +126,9 @@ Cage design_cage(const DesignWish& wish, const Design& design) {
             cage.face_vertex_counts.push_back(4);
             for (const int index : {corner, corner + 1, corner + columns + 1, corner + columns})
                 cage.face_vertex_indices.push_back(index);
+            // The rim only bends its neighbours: it has no surface of its own.
+            if (row == 0 || column == 0 || row + 2 == rows || column + 2 == columns)
+                cage.hole_indices.push_back(static_cast<int>(cage.face_vertex_counts.size()) - 1);
         }
     return cage;
 }
@@ -143,7 +146,8 @@ Json mirror_json(const DesignWish& wish, const Design& design) {
             {"interpolateBoundary", "none"},
             {"points", points},
             {"faceVertexCounts", cage.face_vertex_counts},
-            {"faceVertexIndices", cage.face_vertex_indices}};
+            {"faceVertexIndices", cage.face_vertex_indices},
+            {"holeIndices", cage.hole_indices}};
 }
 
 /// Rows of control points of a uniform bicubic B-spline, in the rectangle's frame.
