@@ -272,7 +272,7 @@ Anamorph make_anamorph(const World& world, const AnamorphRequest& request, const
     // Page dot -> world -> film.
     const Vec3 dx = place.rectangle.u / width, dy = -place.rectangle.v / height,
                top_left = place.rectangle.origin + place.rectangle.v;
-    const FilmImagesParams params{request.frame, request.optic, Path::kReflect, true};
+    const FilmImagesParams params{request.frame, request.optic, Path::kReflect, true, false, progress.cancel};
     const EvaluateMap evaluate = [&](std::span<const Vec2> dots, std::span<MapImages> images) {
         std::vector<std::optional<WorldPlace>> places;
         for (const Vec2& dot : dots) places.push_back(WorldPlace{top_left + dot.x * dx + dot.y * dy, dx, dy});

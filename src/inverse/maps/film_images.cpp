@@ -96,7 +96,7 @@ void find_film_images(const World& world, const FilmImagesParams& params,
     request.frame = params.frame;
     request.visibility = params.visibility;
     request.derivatives = true;
-    const std::vector<PointProjection> found = project_points(world, request, points);
+    const std::vector<PointProjection> found = project_points(world, request, points, {{}, params.cancel});
     std::vector<Lacking> lacking;
     for (std::size_t k = 0; k < found.size(); ++k)
         for (const WorldImage& image : found[k].images) {

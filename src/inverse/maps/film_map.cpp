@@ -13,6 +13,8 @@
 namespace trilens {
 namespace {
 
+constexpr std::size_t kFewestRays = 256;  // shot between two looks at whether to stop
+
 FilmMap empty_map(int width, int height, int source_width, int source_height) {
     FilmMap map;
     map.width = width;
@@ -79,14 +81,22 @@ FilmMap make_film_map(const World& world, const FilmMapRequest& request, const P
     if (unwraps && request.word.asks())
         throw UsageError("a word of events goes with the way view; an unwrap takes a path");
 
-    const FilmImagesParams to_film{request.frame, request.optic, request.path,
-                                   !target.has_directions() || proxy.asks_visibility()};
+    const FilmImagesParams to_film{request.frame, request.optic,
+                                   request.path,  !target.has_directions() || proxy.asks_visibility(),
+                                   false,         progress.cancel};
     FilmTargetsParams from_film;
     from_film.shoot = {request.frame.camera, request.word};
     from_film.optic = request.optic;
     from_film.over_optics = !world.optics.empty();
     const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
-        if (!unwraps) return find_film_targets(world, from_film, target, proxy, pixels, images);
+        Portions portions(kFewestRays, pixels.size());
+        for (std::size_t first = 0, count = 0; !unwraps && first < pixels.size(); first += count) {
+            progress.stop_if_cancelled();
+            count = portions.next(pixels.size() - first);
+            find_film_targets(world, from_film, target, proxy, pixels.subspan(first, count),
+                              images.subspan(first, count));
+        }
+        if (!unwraps) return;
         find_film_images(world, to_film, world_places(target, proxy, pixels), images);
     };
     FilmMap map = unwraps ? empty_map(wide, high, film.width, film.height)

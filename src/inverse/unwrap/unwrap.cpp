@@ -229,6 +229,7 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
         FilmImagesParams params{request.frame, request.optic, request.path,
                                 !target.has_directions() || proxy.asks_visibility()};
         params.frame.camera = photos[i].camera;
+        params.cancel = progress.cancel;
         const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
             find_film_images(world, params, world_places(target, proxy, pixels), images);
         };
