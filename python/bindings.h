@@ -122,8 +122,14 @@ void bind_unwrap(RendererClass& renderer, py::module_& module);  // unwrap, map,
 
 // What several subjects need of scenes.
 
-/// As JSON, numpy's arrays and numbers, too; numbers that are not finite are refused.
-std::string json_text(const py::object& value, const py::object& indent = py::none());
+/// What messages call a value that becomes JSON: its file, and where it stands there.
+struct JsonOrigin {
+    std::string file = {}, pointer = {};
+};
+
+/// As JSON, numpy's arrays and numbers, too. Throws InputError with the place of a number that is not finite.
+std::string json_text(const py::object& value, const py::object& indent = py::none(),
+                      const JsonOrigin& origin = {});
 
 /// {"/json/pointer": value} as the library takes it; texts stay texts.
 std::vector<SceneOverride> overrides_of(const py::dict& overrides);

@@ -20,13 +20,46 @@ py::object plain_value(const py::object& value) {
                          " is not JSON serializable");
 }
 
+/// A key as a part of a JSON pointer.
+std::string escaped(const std::string& key) {
+    std::string part;
+    for (const char c : key) part += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    return part;
+}
+
+/// Throws InputError with the place of the first number that is not finite; the value has no circles.
+void require_finite(const py::handle& value, const JsonOrigin& origin) {
+    const auto look = [&](const std::string& key, const py::handle& part) {
+        require_finite(part, {origin.file, origin.pointer + "/" + escaped(key)});
+    };
+    if (py::isinstance<py::float_>(value)) {
+        if (!std::isfinite(value.cast<double>()))
+            throw InputError(origin.file, origin.pointer,
+                             "is " + text_of(value) + ", which no JSON number is");
+    } else if (py::isinstance<py::dict>(value)) {
+        for (const auto& [key, part] : py::reinterpret_borrow<py::dict>(value)) look(text_of(key), part);
+    } else if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+        std::size_t i = 0;
+        for (const py::handle part : value) look(std::to_string(i++), part);
+    } else if (py::hasattr(value, "tolist")) {
+        require_finite(value.attr("tolist")(), origin);
+    }
+}
+
 }  // namespace
 
-std::string json_text(const py::object& value, const py::object& indent) {
-    return py::module_::import("json")
-        .attr("dumps")(value, py::arg("indent") = indent, py::arg("allow_nan") = false,
-                       py::arg("default") = py::cpp_function(plain_value))
-        .cast<std::string>();
+std::string json_text(const py::object& value, const py::object& indent, const JsonOrigin& origin) {
+    try {
+        return py::module_::import("json")
+            .attr("dumps")(value, py::arg("indent") = indent, py::arg("allow_nan") = false,
+                           py::arg("default") = py::cpp_function(plain_value))
+            .cast<std::string>();
+    } catch (const py::error_already_set& error) {
+        // Of circles it says so, too, before it comes to a number behind them.
+        if (error.matches(PyExc_ValueError) && text_of(error.value()).find("Circular") == std::string::npos)
+            require_finite(value, origin);
+        throw;
+    }
 }
 
 namespace {
@@ -165,7 +198,9 @@ void bind_readers(py::module_& module) {
         [](const py::object& scene, const std::filesystem::path& folder, const py::dict& overrides,
            int resolution, const std::string& label, const py::object& warn) {
             const bool is_text = py::isinstance<py::str>(scene);
-            return parse({is_text ? scene.cast<std::string>() : json_text(scene), folder.string(), label},
+            const JsonOrigin origin{label.empty() ? "scene" : label};
+            return parse({is_text ? scene.cast<std::string>() : json_text(scene, py::none(), origin),
+                          folder.string(), label},
                          overrides, resolution, warn);
         },
         py::arg("scene"), py::arg("folder") = "", py::arg("overrides") = py::dict(),
@@ -190,9 +225,11 @@ void bind_readers(py::module_& module) {
 
 std::vector<SceneOverride> overrides_of(const py::dict& overrides) {
     std::vector<SceneOverride> changes;
-    for (const auto& [pointer, value] : overrides)
+    for (const auto& [key, value] : overrides) {
+        const auto pointer = key.cast<std::string>();
         changes.push_back(
-            {pointer.cast<std::string>(), json_text(py::reinterpret_borrow<py::object>(value))});
+            {pointer, json_text(py::reinterpret_borrow<py::object>(value), py::none(), {"", pointer})});
+    }
     return changes;
 }
 

@@ -100,7 +100,7 @@ using Side = std::variant<py::dict, std::vector<double>>;
 
 LensSide lens_side(const Side& given, const char* name) {
     if (const auto* const keys = std::get_if<py::dict>(&given))
-        return parse_lens_side(json_text(*keys), name);
+        return parse_lens_side(json_text(*keys, py::none(), {name}), name);
     const auto& numbers = std::get<std::vector<double>>(given);
     if (numbers.size() < 2 || numbers.size() > 3 + kAsphereTerms)
         throw UsageError(std::string(name) + " is (radius, aperture), then conic and up to " +

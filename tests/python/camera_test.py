@@ -112,3 +112,28 @@ def test_a_cube_map_cross_is_six_faces_every_id_the_same():
         objects |= set(np.unique(part["directID.object"]))
         compared += 1
     assert compared == 6 and len(objects) > 3
+
+
+def test_a_lens_of_14_coefficients_and_a_tilted_sensor_is_opencv_s_formula():
+    d = [0.11, -0.05, 0.001, -0.0015, 0.01, 0.08, -0.02, 0.004, 0.002, -0.001, 0.0015, 0.001, 0.13, -0.22]
+    lens = {"name": "lens", "type": "opencv", "model": "pinhole", "fx": 230, "fy": 224, "cx": 155.3, "cy": 123.1,
+            "distortion": d, "facets": 4, "lookAt": {"eye": [0, 0, 0], "at": [0, 0, -1]}}
+    film = {"version": 1, "film": {"width": 320, "height": 240}, "cameras": [lens]}
+    camera = trilens.FilmCamera(trilens.parse_scene(film, warn=lambda text: None))
+    generator = np.random.default_rng(3)
+    x, y = generator.uniform(-0.35, 0.35, (2, 400))
+    depth = generator.uniform(0.5, 20, 400)
+    k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4, about_x, about_y = d
+    r2 = x * x + y * y
+    radial = (1 + k1 * r2 + k2 * r2**2 + k3 * r2**3) / (1 + k4 * r2 + k5 * r2**2 + k6 * r2**3)
+    across = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) + s1 * r2 + s2 * r2**2
+    down = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y + s3 * r2 + s4 * r2**2
+    # The documented matrices of OpenCV's tilted sensor.
+    (cx, sx), (cy, sy) = [(np.cos(angle), np.sin(angle)) for angle in (about_x, about_y)]
+    turn = np.array([[cy, 0, -sy], [0, 1, 0], [sy, 0, cy]]) @ np.array([[1, 0, 0], [0, cx, sx], [0, -sx, cx]])
+    onto = np.array([[turn[2, 2], 0, -turn[0, 2]], [0, turn[2, 2], -turn[1, 2]], [0, 0, 1]])
+    u, v, w = onto @ turn @ np.stack([across, down, np.ones(400)])
+    found = camera.project(np.column_stack([x * depth, -y * depth, -depth]))
+    assert np.array_equal(found["point"], np.arange(400))
+    assert np.abs(found["x"] - (230 * u / w + 155.3)).max() < 1e-10
+    assert np.abs(found["y"] - (224 * v / w + 123.1)).max() < 1e-10

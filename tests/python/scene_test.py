@@ -59,7 +59,7 @@ def test_the_examples_are_scenes_that_fit_the_schema():
 
 
 def test_values_that_json_cannot_say_are_refused(sphere):
-    with pytest.raises(ValueError):
+    with pytest.raises(trilens.InputError, match="^/film/width: is nan"):
         sphere.with_overrides({"/film/width": float("nan")})
     with pytest.raises(TypeError):
         sphere.with_overrides({"/film/width": object()})
@@ -118,3 +118,18 @@ def test_a_gltf_is_a_scene_whose_optics_are_chosen_by_name():
         trilens.load_scene(file, optics=["Wrong"])
     with pytest.raises(trilens.UsageError, match="there is no animation"):
         trilens.load_scene(file, animation="Hope")
+
+
+def test_a_number_that_is_not_finite_is_refused_with_its_place(sphere):
+    scene = sphere.to_dict()
+    scene["meshes"][1]["points"] = np.array([[0, 0, 0], [1, np.inf, 0], [1, 1, 0]])
+    with pytest.raises(trilens.InputError, match="^scene: /meshes/1/points/1/1: is inf"):
+        trilens.parse_scene(scene, sphere.folder)
+    with pytest.raises(trilens.InputError, match="^mine: /extras/a~1b/0: is nan"):
+        trilens.parse_scene({"version": 1, "extras": {"a/b": (float("nan"),)}}, label="mine")
+    with pytest.raises(trilens.InputError, match="^/lights/0/position/1: is -inf"):
+        trilens.load_scene(SOURCE / "scenes/sphere.json", {"/lights/0/position": [0, -np.inf, 0]})
+    scene = {"version": 1}
+    scene["extras"] = scene
+    with pytest.raises(ValueError, match="Circular"):
+        trilens.parse_scene(scene, sphere.folder)
