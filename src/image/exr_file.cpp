@@ -94,8 +94,10 @@ void ExrFile::State::open() {
     try {
         file = std::make_unique<Imf::MultiPartInputFile>(*stream, library_threads());
     } catch (const std::exception& error) {
-        throw InputError(name, "",
-                         std::string("is no OpenEXR image, or is damaged: ") + library_reason(error.what()));
+        const std::string why = library_reason(error.what());
+        if (why.find("empty channel list") != std::string::npos)
+            throw InputError(name, "", "has no channels");
+        throw InputError(name, "", "is no OpenEXR image, or is damaged: " + why);
     }
 }
 

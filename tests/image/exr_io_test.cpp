@@ -305,6 +305,22 @@ TEST_CASE("what cannot be read is named with its reason", "[image][bad-input]") 
     CHECK(reading_error(folder).find("is a folder") != std::string::npos);
     put_bytes(folder + "/text.exr", reinterpret_cast<const unsigned char*>("hello"), 5);
     CHECK(reading_error(folder + "/text.exr").find("no OpenEXR") != std::string::npos);
+    // A whole header whose list of channels is empty.
+    std::string header("\x76\x2f\x31\x01\x02\0\0\0", 8);
+    const auto attribute = [&](const std::string& name, const std::string& type, const std::string& bytes) {
+        header += name + '\0' + type + '\0' + static_cast<char>(bytes.size()) + std::string(3, '\0') + bytes;
+    };
+    const std::string window = std::string(8, '\0') + std::string("\3\0\0\0\3\0\0\0", 8);
+    attribute("channels", "chlist", std::string(1, '\0'));
+    attribute("compression", "compression", std::string(1, '\0'));
+    for (const char* name : {"dataWindow", "displayWindow"}) attribute(name, "box2i", window);
+    attribute("lineOrder", "lineOrder", std::string(1, '\0'));
+    attribute("pixelAspectRatio", "float", std::string("\0\0\x80\x3f", 4));
+    attribute("screenWindowCenter", "v2f", std::string(8, '\0'));
+    attribute("screenWindowWidth", "float", std::string("\0\0\x80\x3f", 4));
+    header += '\0' + std::string(64, '\0');
+    put_bytes(folder + "/none.exr", reinterpret_cast<const unsigned char*>(header.data()), header.size());
+    CHECK(reading_error(folder + "/none.exr").ends_with("none.exr: has no channels"));
     put_bytes(folder + "/empty.exr", nullptr, 0);
     CHECK(reading_error(folder + "/empty.exr") != "");
     const std::vector<float> grey(12, 0.5f);

@@ -126,6 +126,14 @@ TEST_CASE("glTF buffers that are not there, or not as long as they say: which, a
         ": /buffers/1/byteLength: is 12, but the buffer holds 10 bytes");
     CHECK(error_of(R"({"uri":"none.bin","byteLength":10})") ==
           ": /buffers/0/uri: the buffer 'none.bin' cannot be read");
+    // One of that name where the program was started is another.
+    const std::filesystem::path home = std::filesystem::current_path();
+    std::filesystem::create_directories(folder + "/elsewhere");
+    std::ofstream(folder + "/elsewhere/there.bin") << "0123456789";
+    std::filesystem::current_path(folder + "/elsewhere");
+    const std::string elsewhere = error_of(R"({"uri":"there.bin","byteLength":10})");
+    std::filesystem::current_path(home);
+    CHECK(elsewhere == ": /buffers/0/uri: the buffer 'there.bin' cannot be read");
     const std::string embedded = R"({"uri":"data:application/octet-stream;base64,)";
     for (const std::string length : {"0", "5", "1000000", "4611686018427387904"})
         CHECK(error_of(embedded + "AAAAAA==\",\"byteLength\":" + length + "}") ==

@@ -50,9 +50,15 @@ class Reader {
     }
 
     void find_buffer_files() {
-        for (const tinygltf::Buffer& buffer : in_.buffers) {
-            std::string path = source_.resolve(buffer.uri);
-            if (!path.empty()) out_.buffer_files.push_back(std::move(path));
+        for (std::size_t i = 0; i < in_.buffers.size(); ++i) {
+            std::string path = source_.resolve(in_.buffers[i].uri);
+            if (path.empty()) continue;
+            // The library takes one of that name from the working directory, too.
+            std::error_code none;
+            if (!std::filesystem::exists(path, none))
+                fail("/buffers/" + std::to_string(i) + "/uri",
+                     "the buffer '" + in_.buffers[i].uri + "' cannot be read");
+            out_.buffer_files.push_back(std::move(path));
         }
     }
 
