@@ -73,6 +73,8 @@ bool could_be_input(const std::string& output) {
 }
 
 void require_outputs_apart(const SuiteRequest& request, const SuiteObserver& observer) {
+    for (const std::string& output : {request.junit, request.html})
+        if (!output.empty()) check_writable(output, {});
     if (!observer.reads && !could_be_input(request.junit) && !could_be_input(request.html)) return;
     const std::vector<std::string> files = files_of_all(request.folders);
     if (observer.reads) observer.reads(files);
@@ -80,10 +82,18 @@ void require_outputs_apart(const SuiteRequest& request, const SuiteObserver& obs
         if (could_be_input(output)) check_writable(output, files);
 }
 
+/// A scene that is not there is the test's mistake: its file is named, too.
+void require_scene(const RenderTest& test) {
+    std::error_code none;
+    if (!std::filesystem::exists(test.scene, none))
+        throw InputError(test.folder + "/test.json", "/scene", "there is no scene '" + test.scene + "'");
+}
+
 /// Loads the scene of a test with what the test sets in it. Pictures tell `warn` what they leave out, and are
 /// given up once `progress` says so. Throws what load_scene throws, and InputError for a camera that the
 /// scene lacks; the drawing InputError for an engine that does not exist.
 SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, const Warn& warn) {
+    require_scene(test);
     Scene scene = load_scene(scene_request(test));
     if (warn)
         for (const std::string& warning : scene.warnings) warn(warning);

@@ -45,6 +45,10 @@ TEST_CASE("a reference may lie beside test.json; a wrong camera is that file's",
     const CommandRun wrong = run_trilens("test '" + folder + "'");
     CHECK(wrong.exit_code == 6);
     CHECK(wrong.out.find("test.json: /camera: there is no camera \"nope\"") != std::string::npos);
+    write_file(folder, "test.json", R"({ "against": "truth", "scene": "gone.json" })");
+    const CommandRun gone = run_trilens("test '" + folder + "'");
+    CHECK(gone.exit_code == 6);
+    CHECK(gone.out.find("test.json: /scene: there is no scene '") != std::string::npos);
     write_file(folder, "test.json", R"({ "against": "truth", "layer": "nope" })");
     const CommandRun layer = run_trilens("test '" + folder + "'");
     INFO(layer.out);
