@@ -2,6 +2,7 @@
 
 #include <trilens/error.h>
 #include <trilens/scene.h>
+#include <trilens/utilities.h>
 
 #include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
@@ -31,10 +32,7 @@
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
-#include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <memory>
@@ -47,17 +45,11 @@ namespace {
 /// Triangles may turn by so much against each other.
 constexpr double kMostTurn = 0.2;  // radians
 
-bool is_one_of(const std::string& ending, std::initializer_list<const char*> endings) {
-    std::string low = ending;
-    for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::find(endings.begin(), endings.end(), low) != endings.end();
-}
-
 /// The readers of both kinds of file are one class but for their names.
 std::unique_ptr<XSControl_Reader> reader_of(const std::string& file) {
-    const std::string ending = std::filesystem::path(file).extension().string();
-    if (is_one_of(ending, {".step", ".stp"})) return std::make_unique<STEPControl_Reader>();
-    if (is_one_of(ending, {".iges", ".igs"})) return std::make_unique<IGESControl_Reader>();
+    const std::string ending = file_ending(file);
+    if (ending == ".step" || ending == ".stp") return std::make_unique<STEPControl_Reader>();
+    if (ending == ".iges" || ending == ".igs") return std::make_unique<IGESControl_Reader>();
     throw InputError(file, "", "is neither STEP (.step, .stp) nor IGES (.iges, .igs)");
 }
 

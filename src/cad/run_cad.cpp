@@ -30,7 +30,7 @@ void expect_a_crash(const std::string& file) {
 
 Answer run_cad(const CadOptions& options, Console& console) {
     console.files().reads({options.file});
-    check_output(options.output, console);
+    check_scene_output(options.output, console);
     expect_a_crash(options.file);
     const CadScene scene = scene_of_cad(read_cad_file(options.file, options.deviation), options);
     for (const std::string& warning : scene.warnings) console.warn(warning);

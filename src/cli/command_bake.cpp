@@ -38,7 +38,7 @@ Answer run_bake(const BakeOptions& options, Console& console) {
     request.solver = *find_named<RadiositySolver>(options.solver);
     request.form_factors = *find_named<FormFactorMethod>(options.form_factors);
     console.files().reads({options.scene.scene});
-    check_output(options.output, console);
+    check_scene_output(options.output, console);
     if (!options.plot.empty()) {
         check_output(options.plot, console);
         convergence_plot({}, options.plot);  // refuses other endings before the work

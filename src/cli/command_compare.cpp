@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -40,7 +39,7 @@ struct CompareCommand {
 };
 
 bool is_png(const std::string& file) {
-    return std::filesystem::path(file).extension() == ".png";
+    return file_ending(file) == ".png";
 }
 
 /// Without those of one layer.
@@ -114,7 +113,7 @@ void write_difference(const CompareRequest& request, const ComparedInputs& input
 }
 
 void check_options(const CompareRequest& request, Console& console) {
-    const std::string ending = std::filesystem::path(request.difference).extension().string();
+    const std::string ending = file_ending(request.difference);
     if (!request.difference.empty() && ending != ".exr" && ending != ".png")
         throw UsageError("a difference is written as .exr or .png, not \"" + request.difference + "\"");
     if (request.scale != 1 && !is_png(request.difference))

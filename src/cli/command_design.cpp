@@ -74,7 +74,7 @@ Answer run(const DesignOptions& options, Console& console) {
     const DesignWish wish = read_wish(options.wish);
     if (wish.lens && options.thickness > 0)
         throw UsageError("--thickness is of mirrors: the wish says how thick the lens is");
-    check_output(options.output, console);
+    check_scene_output(options.output, console);
     for (const std::string& file : {options.stl, options.obj, options.sag, options.sphere})
         if (!file.empty()) {
             if (is_standard_stream(file)) throw UsageError("only -o may write to standard output");

@@ -95,7 +95,7 @@ Answer run(const CalibrationOptions& options, Console& console) {
         is_standard_stream(options.points)
             ? parse_correspondences(standard_input("pairs are"), kStandardInput)
             : read_correspondences(options.points);
-    check_output(options.output, console);
+    check_scene_output(options.output, console);
     if (!options.report.empty()) check_output(options.report, console);
     warn_of_folder(options.output, scene, console);
 

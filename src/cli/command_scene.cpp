@@ -36,7 +36,7 @@ Answer validate(const SceneOptions& options, Console& console) {
 /// The scene with nothing left to import, its files named from where the output lies.
 Answer convert(const SceneOptions& options, const std::string& output, Console& console) {
     const bool to_file = !output.empty() && !is_standard_stream(output);
-    if (to_file) check_output(output, console);
+    if (to_file) check_scene_output(output, console);
     const Scene scene = load_scene(options, console);
     const std::string folder =
         to_file ? std::filesystem::absolute(output).parent_path().string() : scene.folder;

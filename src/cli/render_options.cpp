@@ -2,7 +2,6 @@
 
 #include <trilens/animation.h>
 #include <algorithm>
-#include <filesystem>
 
 #include "terminal/libraries.h"
 
@@ -135,7 +134,7 @@ std::vector<Option> engine_options(RenderOptions& options) {
 std::string output_format(const RenderOptions& options, const std::string& command) {
     if (!options.format.empty()) return options.format;
     if (is_standard_stream(options.output)) return "exr";
-    const std::string ending = std::filesystem::path(options.output).extension().string();
+    const std::string ending = file_ending(options.output);
     if (options.frames.asks() && ending == ".apng") return "apng";
     if (ending == ".exr" || ending == ".png" ||
         (command == "render" && (ending == ".svg" || ending == ".obj")))

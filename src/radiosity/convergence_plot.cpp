@@ -1,4 +1,5 @@
 // How a bake's light came to rest, as a plot.
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "radiosity/bake.h"
@@ -23,8 +24,9 @@ std::string convergence_plot(const BakeReport& report, const std::string& file) 
     params.y_label = "unshot power [%]";
     params.reference_orders = false;
     const PlotDrawing drawing = draw_plot(params, {&series, 1});
-    if (file.ends_with(".svg")) return plot_svg(drawing);
-    if (file.ends_with(".pdf")) return plot_pdf(drawing);
+    const std::string ending = file_ending(file);
+    if (ending == ".svg") return plot_svg(drawing);
+    if (ending == ".pdf") return plot_pdf(drawing);
     throw UsageError("the plot \"" + file + "\" must end in .svg or .pdf");
 }
 

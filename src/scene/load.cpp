@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/files/files.h"
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/names.h"
@@ -13,7 +14,6 @@
 #include "scene/animation/animation_keys.h"
 #include "scene/data/light_objects.h"
 #include "scene/formats/lens_file.h"
-#include "scene/formats/line_scanner.h"
 #include "scene/imports/expand_imports.h"
 #include "scene/imports/expand_lenses.h"
 #include "scene/imports/housing.h"
@@ -104,13 +104,13 @@ void warn_of_appearance(Reading& reading) {
 
 /// What a file is instead of a scene, by its name; empty where that does not say.
 std::string other_kind(const std::string& file) {
-    const std::string ending = in_capitals(std::filesystem::path(file).extension().string());
+    const std::string ending = file_ending(file);
     const auto is_one_of = [&](std::initializer_list<const char*> endings) {
         return std::find(endings.begin(), endings.end(), ending) != endings.end();
     };
-    if (is_one_of({".OBJ"})) return "is a mesh: a scene names it as the 'file' of one of its meshes";
-    if (is_one_of({".ZMX", ".SEQ"})) return "is a lens: a scene names it as the 'file' of one of its lenses";
-    if (is_one_of({".STEP", ".STP", ".IGES", ".IGS"}))
+    if (is_one_of({".obj"})) return "is a mesh: a scene names it as the 'file' of one of its meshes";
+    if (is_one_of({".zmx", ".seq"})) return "is a lens: a scene names it as the 'file' of one of its lenses";
+    if (is_one_of({".step", ".stp", ".iges", ".igs"}))
         return "is a CAD file: 'trilens cad' makes a scene of its bodies";
     return "";
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/names.h"
 #include "image/image_io.h"
@@ -34,7 +35,7 @@ TextureReader texture_reader(const Progress& progress = {}) {
 }
 
 bool is_image(const std::string& file) {
-    return file.size() > 4 && file.compare(file.size() - 4, 4, ".exr") == 0;
+    return file_ending(file) == ".exr";
 }
 
 Scene load_scene_of_image(const SceneRequest& request) {

@@ -11,10 +11,6 @@
 namespace trilens {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 std::vector<unsigned char> encode_beauty(const std::string& name, const Image& image,
                                          const ToneMapping& tone) {
     PngStrips strips(name, image, tone);
@@ -57,8 +53,8 @@ ToneCurve tone_curve(const std::string& name) {
 }
 
 ImageFormat image_format(const std::string& file) {
-    if (ends_with(file, ".exr")) return ImageFormat::kExr;
-    if (ends_with(file, ".png")) return ImageFormat::kPng;
+    if (file_ending(file) == ".exr") return ImageFormat::kExr;
+    if (file_ending(file) == ".png") return ImageFormat::kPng;
     throw UsageError("the image \"" + file + "\" must end in .exr (all channels) or .png (the beauty, sRGB)");
 }
 

@@ -73,8 +73,7 @@ Bake bake_light(const Renderer& renderer, const BakeRequest& request, const Prog
 
 std::string map_format(const std::string& file) {
     for (const char* format : {"exr", "npz", "pgm", "data", "obj"})
-        if (file.size() > std::string(format).size() + 1 && file.ends_with(std::string(".") + format))
-            return format;
+        if (file_ending(file) == std::string(".") + format) return format;
     throw UsageError(
         "the map \"" + file +
         "\" must end in .exr (STMap), .npz (OpenCV), .pgm (ffmpeg), .data (Bourke's mesh) or .obj");
@@ -120,14 +119,15 @@ AnamorphCheck verify_anamorph(const Renderer& renderer, const AnamorphRequest& r
 
 void check_page_name(const std::string& file) {
     for (const char* end : {".pdf", ".svg", ".png"})
-        if (file.size() > 4 && file.ends_with(end)) return;
+        if (file_ending(file) == end) return;
     throw UsageError("the page \"" + file + "\" must end in .pdf, .svg or .png");
 }
 
 void write_page(const std::string& file, const AnamorphPage& page) {
     check_page_name(file);
-    if (file.ends_with(".pdf")) return replace_file(file, pdf_of(page));
-    if (file.ends_with(".svg")) return replace_text_file(file, svg_of(page));
+    const std::string ending = file_ending(file);
+    if (ending == ".pdf") return replace_file(file, pdf_of(page));
+    if (ending == ".svg") return replace_text_file(file, svg_of(page));
     replace_file(file, png_of(page));
 }
 

@@ -20,11 +20,6 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
 }
 
-bool ends_in(const std::string& file, const std::string& ending) {
-    return file.size() >= ending.size() &&
-           file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 std::string camera_pointer(const ViewSettings& settings) {
     return "/cameras/" + std::to_string(settings.frame.camera);
 }
@@ -141,13 +136,14 @@ void SceneViewer::advance() {
 }
 
 void SceneViewer::save_or_throw(const std::string& file) {
-    if (ends_in(file, ".json")) {
+    const std::string ending = file_ending(file);
+    if (ending == ".json") {
         replace_text_file(file, session_text(session_));
-    } else if (ends_in(file, ".svg")) {
+    } else if (ending == ".svg") {
         std::string svg;
         drawing_.with_painter([&](Painter& painter) { svg = painter.svg(); });
         replace_text_file(file, svg);
-    } else if (ends_in(file, ".exr") || ends_in(file, ".png")) {
+    } else if (ending == ".exr" || ending == ".png") {
         Image picture;
         drawing_.with_painter([&](Painter& painter) { picture = painter.picture(); });
         write_image(file, picture, settings().tone);

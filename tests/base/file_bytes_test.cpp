@@ -39,6 +39,14 @@ TEST_CASE("files: names that a killed process left are passed over and stay", "[
     CHECK(files == parts.size() + (are_too_many ? 0 : 1));
 }
 
+TEST_CASE("files: a name's ending, in small letters", "[base]") {
+    CHECK(file_ending("a/B.EXR") == ".exr");
+    CHECK(file_ending("two.dots.Tri") == ".tri");
+    CHECK(file_ending("folder.d/none") == "");
+    CHECK(file_ending(".exr") == "");
+    CHECK(file_ending("") == "");
+}
+
 TEST_CASE("files: a new file takes its name when it is whole, else leaves the old file alone", "[base]") {
     const std::string folder = trilens_test::scratch_dir("base_new_file"), file = folder + "/whole.bin";
     const auto bytes = [](const std::string& text) {

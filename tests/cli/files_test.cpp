@@ -52,6 +52,25 @@ TEST_CASE("an output that is an input, a pipe or behind a link", "[cli][files]")
               .exit_code == 2);
 }
 
+TEST_CASE("file names may end in capitals, and a scene's name ends as one", "[cli][files]") {
+    const std::string folder = scratch_dir("cli_files_endings");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    for (const char* name : {"A.EXR", "B.PNG", "C.SVG"})
+        CHECK(run_trilens("render " + quoted(scene) + " -n 2 -o " + quoted(folder + "/" + name)).exit_code ==
+              0);
+    CHECK(bytes_of(folder + "/B.PNG").rfind("\x89PNG", 0) == 0);
+    CHECK(bytes_of(folder + "/C.SVG").find("<svg") != std::string::npos);
+    const std::string exr = quoted(folder + "/A.EXR");
+    CHECK(run_trilens("compare " + exr + " " + exr + " -o " + quoted(folder + "/D.PNG")).exit_code == 0);
+    CHECK(bytes_of(folder + "/D.PNG").rfind("\x89PNG", 0) == 0);
+    CHECK(run_trilens("render " + exr + " -o " + quoted(folder + "/E.exr")).exit_code == 0);
+    const CommandRun wrong =
+        run_trilens("scene convert " + quoted(scene) + " -o " + quoted(folder + "/x.PLY"));
+    CHECK(wrong.exit_code == 2);
+    CHECK(wrong.err.find("ends in .json") != std::string::npos);
+    CHECK(!fs::exists(folder + "/x.PLY"));
+}
+
 TEST_CASE("an image renders again through its own camera, and finds its scene's files from anywhere",
           "[cli][files]") {
     const std::string folder = scratch_dir("cli_files_again");

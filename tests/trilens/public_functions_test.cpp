@@ -25,6 +25,7 @@ const std::map<std::string, std::string> kElsewhere{
     {"shoot_places", "Renderer::shoot"},
     {"shoot_rays", "Renderer::shoot"},
     {"make_optic_surface", "Renderer, of scenes that are no data"},
+    {"file_ending", "of any name"},
     {"kind_name", "of any primitive"},
     {"name_of", "of an enumerator"},
     {"normalize_or_zero", "of any vector"},

@@ -17,6 +17,13 @@
 
 namespace trilens {
 
+std::string file_ending(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    for (char& letter : ending)
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    return ending;
+}
+
 std::string output_target(const std::string& file) {
     namespace fs = std::filesystem;
     constexpr int kMostLinks = 40;  // as the system has it; a longer chain is a circle

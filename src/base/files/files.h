@@ -10,6 +10,10 @@
 
 namespace trilens {
 
+/// What a file's name ends in, in small letters with its dot: ".exr" of "a/B.EXR"; empty where it has no
+/// ending.
+std::string file_ending(const std::string& file);
+
 // Whole files read, and written in one step: beside their name, then renamed, so that a reader sees the old
 // file or the whole new one.
 

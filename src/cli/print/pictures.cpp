@@ -121,6 +121,14 @@ void check_output(const std::string& output, Console& console) {
     console.files().writes(output);
 }
 
+void check_scene_output(const std::string& output, Console& console) {
+    for (const char* other :
+         {".exr", ".png", ".svg", ".pdf", ".obj", ".ply", ".stl", ".gltf", ".glb", ".csv"})
+        if (file_ending(output) == other)
+            throw UsageError("the output \"" + output + "\" is a scene file: its name ends in .json");
+    check_output(output, console);
+}
+
 Answer name_output(const std::string& output, Console& console) {
     console.note("wrote " + output + " meanwhile");
     return named(output);

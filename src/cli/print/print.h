@@ -1,9 +1,6 @@
 // What the commands answer, as text, JSON and CSV.
 #pragma once
 
-#include <optional>
-#include <span>
-#include <string>
 #include <trilens/compare.h>
 #include <trilens/fit.h>
 #include <trilens/image.h>
@@ -12,6 +9,9 @@
 #include <trilens/scene.h>
 #include <trilens/suite.h>
 #include <trilens/sweep.h>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "terminal/command.h"
@@ -78,6 +78,9 @@ struct OutputFormat {
 /// Throws UsageError where `output` is an input, or is standard output and the JSON answer is there too;
 /// OutputError where it could not be written. Before long work.
 void check_output(const std::string& output, Console& console);
+
+/// The same of a scene file. Throws UsageError, too, for a name that ends as files of other kinds do.
+void check_scene_output(const std::string& output, Console& console);
 
 /// The answer for a file that was written while it was drawn.
 Answer name_output(const std::string& output, Console& console);

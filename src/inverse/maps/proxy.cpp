@@ -70,7 +70,7 @@ ProxyDescription parse_proxy(const std::string& text) {
         proxy.box.include(Vec3(n[3], n[4], n[5]));
         return proxy;
     }
-    if (text.size() > 4 && text.ends_with(".obj")) {
+    if (file_ending(text) == ".obj") {
         proxy.kind = ProxyKind::kMesh;
         proxy.file = text;
         return proxy;

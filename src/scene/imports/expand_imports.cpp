@@ -1,9 +1,9 @@
 #include "scene/imports/expand_imports.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "json/schema.h"
 #include "scene/imports/gltf_scene.h"
@@ -203,10 +203,8 @@ void shift_camera_tracks(Json& scene, std::size_t by) {
 }  // namespace
 
 bool is_gltf_name(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    for (char& letter : extension)
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return extension == ".gltf" || extension == ".glb";
+    const std::string ending = file_ending(file);
+    return ending == ".gltf" || ending == ".glb";
 }
 
 void expand_imports(Json& scene, const ImportOptions& options, Reading& reading) {

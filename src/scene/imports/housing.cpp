@@ -4,12 +4,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/files/files.h"
 #include "base/math/vec.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -269,22 +269,16 @@ void add_dome(const Port& port, Json& scene) {
                        optic("outside", "glass", 0, ball(port.inside + port.thickness))};
 }
 
-std::string ending_of(const std::string& file) {
-    std::string ending = std::filesystem::path(file).extension().string();
-    for (char& letter : ending) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return ending;
-}
-
 }  // namespace
 
 bool is_housing_name(const std::string& file) {
-    const std::string ending = ending_of(file);
+    const std::string ending = file_ending(file);
     return ending == ".yaml" || ending == ".yml" || ending == ".txt";
 }
 
 Json scene_of_housing(const std::string& text, const std::string& file) {
     const std::vector<CalibratedCamera> cameras =
-        ending_of(file) == ".txt" ? read_colmap(text, file) : std::vector{read_calibmar(text, file)};
+        file_ending(file) == ".txt" ? read_colmap(text, file) : std::vector{read_calibmar(text, file)};
     Json scene{{"version", 1}, {"film", {{"width", cameras[0].width}, {"height", cameras[0].height}}}};
     for (const CalibratedCamera& camera : cameras) scene["cameras"].push_back(camera_json(camera));
     // In at one side of the glass and out at the other.

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
+#include "base/files/files.h"
 #include "json/schema.h"
 #include "lens/dispersion.h"
 #include "lens/q_asphere.h"
 #include "scene/formats/lens_file.h"
-#include "scene/formats/line_scanner.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -332,13 +332,13 @@ LensSide parse_side(const std::string& bytes, const std::string& file) {
 
 LensPrescription parse_lens(const std::string& bytes, const std::string& file,
                             std::span<const Glass> glasses) {
-    const std::string ending = in_capitals(std::filesystem::path(file).extension().string());
+    const std::string ending = file_ending(file);
     LensPrescription lens;
-    if (ending == ".ZMX")
+    if (ending == ".zmx")
         lens = parse_zemax(bytes, file, glasses);
-    else if (ending == ".SEQ")
+    else if (ending == ".seq")
         lens = parse_code_v(bytes, file, glasses);
-    else if (ending == ".JSON")
+    else if (ending == ".json")
         lens = parse_lens_json(bytes, file, glasses);
     else
         throw InputError(file, "", "is no lens file: its name ends neither in .zmx nor .seq nor .json");

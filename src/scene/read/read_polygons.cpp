@@ -1,10 +1,10 @@
 // Inline cages and subdivision tags out of checked JSON: lengths and indices.
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <numeric>
 #include <set>
 
+#include "base/files/files.h"
 #include "base/util/check.h"
 #include "scene/formats/gltf.h"
 #include "scene/formats/obj.h"
@@ -314,9 +314,7 @@ std::shared_ptr<const Texture> read_gltf_picture(Reading& reading, const Node& f
 PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading) {
     const Node node = mesh["file"];
     const std::string path = reading.resolve(node.json.get<std::string>());
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& letter : extension)
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    const std::string extension = file_ending(path);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     if (extension.rfind(".usd", 0) == 0)
         node.fail("'" + path + "' is USD, which is not read: export glTF (.glb) or OBJ instead");

@@ -1,9 +1,8 @@
 // Textures out of checked JSON: a file's name, an object with the file and how it lies, or a pattern.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 
+#include "base/files/files.h"
 #include "base/image/texture_lookup.h"
 #include "base/math/luminance.h"
 #include "base/math/srgb.h"
@@ -161,9 +160,7 @@ std::shared_ptr<const Texture> as_stored(const Texture& linear) {
 
 /// Whether files of this name hold light, and not values for a screen.
 bool holds_light(const std::string& file) {
-    std::string ending = std::filesystem::path(file).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = file_ending(file);
     return ending == ".exr" || ending == ".hdr";
 }
 

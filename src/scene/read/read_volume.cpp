@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/files/files.h"
 #include "base/math/box.h"
 #include "base/util/names.h"
 #include "scene/read/reading.h"
@@ -223,7 +224,7 @@ std::variant<CellSoup, RegularGrid> read_cells(const Node& node, Volume& volume,
     if (node.has("grid")) return read_grid(node, reading);
     if (node.has("points")) return read_inline_cells(node);
     const std::string path = reading.resolve(node["file"].json.get<std::string>());
-    const std::string ending = std::filesystem::path(path).extension().string();
+    const std::string ending = file_ending(path);
     if (ending == ".nrrd" || ending == ".nhdr") {
         if (node.has("field")) node["field"].fail("is of a VTK file: an NRRD has one field");
         return parse_nrrd(

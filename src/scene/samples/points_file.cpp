@@ -4,10 +4,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <string_view>
 
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "scene/data/scene.h"
@@ -110,8 +110,7 @@ std::vector<Vec3> points_of(const std::vector<double>& numbers) {
 }
 
 bool is_ply_name(const std::string& file) {
-    const std::string ending = in_capitals(std::filesystem::path(file).extension().string());
-    return ending == ".PLY";
+    return file_ending(file) == ".ply";
 }
 
 /// How many numbers the first line has that begins like one.
