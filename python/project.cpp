@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <type_traits>
 
 #include "arrays.h"
@@ -153,8 +154,27 @@ Rows rows_of(const std::vector<std::optional<WorldImage>>& images, const std::ve
     return rows;
 }
 
+/// Throws UsageError for what no call of project can have returned.
+void check_images(const py::object& images) {
+    const auto has = [](const py::object& type, std::initializer_list<const char*> fields) {
+        const py::object names = py::getattr(type, "names", py::none());
+        return !names.is_none() && std::all_of(fields.begin(), fields.end(),
+                                               [&](const char* field) { return names.contains(field); });
+    };
+    bool is_such = py::isinstance<py::array>(images) &&
+                   py::reinterpret_borrow<py::array>(images).ndim() == 1 &&
+                   has(images.attr("dtype"), {"point", "step_count", "steps"});
+    if (is_such) {
+        const py::object steps = images[py::str("steps")];
+        is_such = has(steps.attr("dtype"), {"optic", "face", "front", "event", "uv"}) &&
+                  py::reinterpret_borrow<py::array>(steps).ndim() == 2;
+    }
+    if (!is_such) throw UsageError("start is an array of images that project has returned");
+}
+
 /// The paths of images that an earlier call has returned.
 std::vector<ImageStart> starts_of(const py::object& images) {
+    check_images(images);
     const auto numbers = [](const py::object& field) { return Indices(field); };
     const py::object steps = images["steps"];
     const Indices point = numbers(images["point"]), count = numbers(images["step_count"]),
@@ -271,7 +291,8 @@ void bind_project(RendererClass& renderer) {
         "Where world points appear: directly and over every optic, all images of all points.\n\n"
         "points: (N, 3), world frame.\n"
         "directions: instead, (N, 3): points at infinity, from the scene towards them; of any length.\n"
-        "path: a word of events, R reflected, T transmitted, ? either: only images of these events, whatever "
+        "path: a word of events, R reflected, T transmitted, ? either, or D, seen directly: only images of "
+        "these events, whatever "
         "the scene's\nmaxDepth; \"R\", \"TT\". None: all, as deep as the scene follows paths.\n"
         "search: \"complete\" looks at every part of the exact surfaces; \"facets\" only near what the "
         "facets show,\n"

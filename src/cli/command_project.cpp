@@ -85,12 +85,13 @@ Answer run(const ProjectOptions& options, Console& console) {
     const auto open = std::count_if(images.begin(), images.end(),
                                     [](const PointProjection& point) { return !point.complete; });
     if (open > 0)
-        console.warn(fmt::format("{} of {} points may have images that are not listed{}", open, points.size(),
-                                 request.search == ImageSearch::kFacets
-                                     ? "; --search complete with --refine exact looks for all"
-                                     : " (near a caustic, on the optic itself, in overridden normals, over "
-                                       "several optics, through a camera without one eye, or beyond "
-                                       "--max-images)"));
+        console.warn(fmt::format(
+            "{} of {} points may have images that are not listed{}", open, points.size(),
+            request.search == ImageSearch::kFacets
+                ? "; --search complete with --refine exact looks for all"
+                : " (near a caustic, on the optic itself, in overridden normals, over "
+                  "several optics or more than once over one, through a camera without one eye, or beyond "
+                  "--max-images)"));
     Answer answer;
     answer.fields["seconds"] = seconds;
     answer.fields["incomplete"] = open;
@@ -136,7 +137,8 @@ Command project_command() {
            .offer = Offer::kFile},
           {.names = "--path",
            .target = &options->path,
-           .help = "only images of these events, R reflected, T transmitted, ? either, whatever the "
+           .help = "only images of these events, R reflected, T transmitted, ? either, or D, seen directly, "
+                   "whatever the "
                    "scene's maxDepth",
            .value = "WORD"},
           {.names = "--max-images",

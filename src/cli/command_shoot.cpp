@@ -111,7 +111,8 @@ Command shoot_command() {
                   .offer = Offer::kFile},
                  {.names = "--path",
                   .target = &options->path,
-                  .help = "the events that each path must have: R reflected, T transmitted, ? either; "
+                  .help = "the events that each path must have: R reflected, T transmitted, ? either, or D: "
+                          "seen directly; "
                           "without it the stronger way is taken where glass parts light",
                   .value = "WORD"},
                  {.names = "--events",

@@ -129,3 +129,75 @@ TEST_CASE("a point alone has the images that it has among others, whatever was a
         }
     }
 }
+
+namespace {
+
+/// Of the film places whose exact rays see something after these events, with no optic after them: how many
+/// there are, and how many of what they see is not projected back to them.
+std::pair<std::size_t, std::size_t> seen_and_missed(const World& world, const EventWord& word) {
+    std::vector<Vec2> pixels;
+    for (int y = 0; y < world.scene.film.height; ++y)
+        for (int x = 0; x < world.scene.film.width; ++x) pixels.emplace_back(x + 0.37, y + 0.61);
+    ShootRequest shoot;
+    shoot.path = word;
+    const ShotRays shot = shoot_places(world, shoot, pixels);
+    std::vector<Vec3> points;
+    std::vector<Vec2> places;
+    for (std::size_t i = 0; i < shot.rays.size(); i += 3) {
+        if (shot.rays[i].state != ShotState::kSeen || shot.rays[i].cut) continue;
+        points.push_back(shot.rays[i].position);
+        places.push_back(pixels[i]);
+    }
+    ProjectRequest request;
+    request.path = word;
+    request.visibility = false;
+    const std::vector<PointProjection> found = project_points(world, request, points);
+    std::size_t missed = 0;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        missed += std::none_of(found[i].images.begin(), found[i].images.end(), [&](const WorldImage& image) {
+            return length(image.pixel - places[i]) < 1e-4;
+        });
+    return {points.size(), missed};
+}
+
+}  // namespace
+
+TEST_CASE("what exact rays see over two reflections in a torus is projected back to them", "[laws][law]") {
+    const auto [seen, missed] = seen_and_missed(*shipped_world("torus", 12, 120, 90), EventWord("RR"));
+    INFO(missed << " of " << seen << " missed");
+    CHECK(seen > 50);
+    CHECK(missed * 40 <= seen);
+}
+
+TEST_CASE("a spout before the body of a teapot shows the floor over two reflections", "[laws][law]") {
+    const std::unique_ptr<World> world = shipped_world("patches/teapot", 8, 160, 120);
+    const Vec3 point(-2.25151595372, 0, -2.03585214571);  // what the exact ray of this place sees
+    ProjectRequest request;
+    request.path = EventWord("RR");
+    const PointProjection found = project_points(*world, request, {&point, 1})[0];
+    CHECK(std::any_of(found.images.begin(), found.images.end(), [](const WorldImage& image) {
+        return length(image.pixel - Vec2(36.5, 46.5)) < 1e-4 && image.visible;
+    }));
+    CHECK_FALSE(found.complete);
+}
+
+TEST_CASE("a path of no event is what is seen directly", "[laws][law]") {
+    const auto world = worlds_of_several()[2];
+    const std::vector<Vec3> points = points_around(20, 7);
+    ProjectRequest all, direct;
+    direct.path = EventWord("D");
+    const std::vector<PointProjection> every = project_points(*world, all, points);
+    const std::vector<PointProjection> seen = project_points(*world, direct, points);
+    std::size_t compared = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        std::vector<Vec2> expected, had;
+        for (const WorldImage& image : every[p].images)
+            if (image.path == Path::kDirect) expected.push_back(image.pixel);
+        for (const WorldImage& image : seen[p].images) had.push_back(image.pixel);
+        CHECK(had == expected);
+        CHECK(seen[p].complete);
+        compared += expected.size();
+    }
+    CHECK(compared > 10);
+    CHECK_THROWS_AS(EventWord("DR"), UsageError);
+}

@@ -263,3 +263,11 @@ def test_pointers_without_numbers_are_refused():
     for pointer in ("/meshes/0/primitive/nothing", "/meshes/0/name", "meshes", "/cameras"):
         with pytest.raises(trilens.InputError):
             renderer.project([[1, 2, 3]], derivatives=[pointer])
+
+
+@pytest.mark.parametrize("start", [5, "ball", [1, 2], np.zeros(3), np.zeros((2, 2)), {"point": 1},
+                                   np.zeros(2, [("point", "i8"), ("step_count", "i8"), ("steps", "f8")])])
+def test_a_start_that_no_projection_returned_is_refused_in_words(start):
+    renderer = trilens.Renderer(trilens.parse_scene(trilens.scene_examples()["mirror-sphere"]))
+    with pytest.raises(trilens.UsageError, match="start is an array of images that project has returned"):
+        renderer.project([[1, 2, 3]], start=start)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
@@ -17,9 +18,14 @@ namespace {
 
 /// A point is free if what its ray meets lies within this share of the way.
 constexpr double kPathFreeShare = 1e-6;
-constexpr std::size_t kPathFacetsPerTask = 256, kLonePerTask = 4;
+constexpr std::size_t kPathFacetsPerTask = 256;
 /// Traced parts whose paths are held at once, until their rays are added to their histories.
-constexpr std::size_t kLoneBatch = 1024;
+constexpr std::size_t kTracedBatch = 1024;
+constexpr std::size_t kManySteps = 256;
+/// Rays that turn by more than this chord from corner to corner are no seed's.
+constexpr double kMostSeedTurn = 1.0;
+/// The surface lies no farther from the middle of its facet, in multiples of the way to the facet's corners.
+constexpr double kFacetReach = 4;
 
 /// Whether a facet may be seen on the film: some corner behind the eye, or its box on the film.
 bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film) {
@@ -36,30 +42,6 @@ bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film)
 std::array<Vec3, 3> corners_of(const RayMesh& outline, Id facet) {
     const IdTriple& c = outline.facets[facet];
     return {outline.screen[c[0]], outline.screen[c[1]], outline.screen[c[2]]};
-}
-
-/// Pixels: the longest side of the part of a facet; infinite where a corner lies behind the eye.
-double reach_of(const RayMesh& outline, const PathLeaf& leaf) {
-    std::array<Vec2, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 s = corners_of(outline, leaf.facet)[k];
-        if (!(s.z > 0)) return std::numeric_limits<double>::infinity();
-        corner[k] = Vec2(s) / s.z;
-    }
-    const double longest = std::max(
-        {length(corner[1] - corner[0]), length(corner[2] - corner[1]), length(corner[0] - corner[2])});
-    return std::ldexp(longest, -leaf.level);
-}
-
-Vec2 lone_pixel(const PathLeaf& leaf) {
-    return Vec2(leaf.centre) / leaf.centre.z;
-}
-
-/// Whether some of a traced part may be on the film, or within a pixel of it.
-bool may_be_on_film(const RayMesh& outline, const PathLeaf& leaf, const Vec2& film) {
-    if (!may_reach_film(corners_of(outline, leaf.facet), film)) return false;
-    const Vec2 centre = lone_pixel(leaf);
-    return length(centre - glm::clamp(centre, Vec2(0), film)) <= reach_of(outline, leaf) + 1;
 }
 
 /// Whether the optic itself hides a point of it from the camera. `size`: the optic's, for parallel rays.
@@ -117,6 +99,26 @@ std::vector<Id> facets_in_view(const PathBuilder& paths, const SurfaceGrid& grid
     return seen;
 }
 
+/// Facets without rays stay such.
+void append(RayMesh& mesh, const RayMesh& more) {
+    const Id first = static_cast<Id>(mesh.rays.size());
+    mesh.rays.insert(mesh.rays.end(), more.rays.begin(), more.rays.end());
+    mesh.screen.insert(mesh.screen.end(), more.screen.begin(), more.screen.end());
+    for (IdTriple facet : more.facets) {
+        for (Id& corner : facet)
+            if (corner != kNone) corner += first;
+        mesh.facets.push_back(facet);
+    }
+}
+
+/// The largest chord between the directions of three rays.
+double turn_of(const std::array<const PathSegment*, 3>& ends) {
+    const auto chord = [&](std::size_t a, std::size_t b) {
+        return length(ends[a]->ray.direction - ends[b]->ray.direction);
+    };
+    return std::max({chord(0, 1), chord(1, 2), chord(2, 0)});
+}
+
 /// Whether all rays of a facet of a node are known to have its history: they are but for paths so faint that
 /// nobody asked, and behind places that rest on an object (one_history.cpp).
 bool is_proven(const OpticPaths& paths, Id node, std::size_t facet) {
@@ -155,7 +157,7 @@ SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame,
       surface_of_([&world](Id other) -> const Surface& { return *world.optics[other].surface; }) {
     builder_.prepare(facets_in_view(builder_, frame.optics[optic].facets->grid(), world.scene.film));
     add_nodes();
-    add_lone_rays();
+    add_film_parts();
     drop_histories();
     get_ready();
 }
@@ -172,6 +174,8 @@ void SeveralOpticsImages::drop_histories() {
 /// Rows of what is made later; of optics whose normals are not their own, exact rays alone tell.
 void SeveralOpticsImages::get_ready() {
     for (History& history : histories_) {
+        if (!history.mesh.facets.empty()) history.seeds = std::make_unique<MeshPointImages>(history.mesh);
+        history.mesh = {};
         for (const PathSegment& segment : history.chain) history.colours.push_back(segment.colours);
         if (!std::all_of(history.steps.begin(), history.steps.end(), [&](const Step& step) {
                 return has_own_normals(world_.scene.meshes[world_.optics[step.optic].mesh]);
@@ -198,7 +202,7 @@ void SeveralOpticsImages::add_nodes() {
         for (std::size_t i = 0; i < segments.size(); ++i)
             segments[i].parent = i == 0 ? kNone : static_cast<Id>(i - 1);
         History& history = history_of(segments, static_cast<Id>(segments.size() - 1));
-        history.seeds = std::make_unique<MeshPointImages>(nodes[n].mesh);
+        append(history.mesh, nodes[n].mesh);
         for (const Vec3& weight : nodes[n].weight)
             history.most_light = std::max(history.most_light, of_worst_colour(weight));
         for (std::size_t f = 0; f < nodes[n].leaves.size(); ++f) {
@@ -235,27 +239,65 @@ SeveralOpticsImages::History& SeveralOpticsImages::history_of(const std::vector<
     return made;
 }
 
-void SeveralOpticsImages::add_lone_rays() {
-    std::vector<const PathLeaf*> traced;
-    for (const PathLeaf& leaf : builder_.paths().leaves)
-        if (leaf.method == LeafMethod::kTraced && leaf.centre.z > 0) traced.push_back(&leaf);
-    std::vector<std::vector<PathSegment>> followed;
-    for (std::size_t first = 0; first < traced.size(); first += kLoneBatch) {
-        const auto batch = std::span(traced).subspan(first, std::min(kLoneBatch, traced.size() - first));
-        followed.assign(batch.size(), {});
-        parallel_for(batch.size(), kLonePerTask, [&](std::size_t from, std::size_t to) {
-            for (std::size_t i = from; i < to; ++i) followed[i] = followed_from(lone_pixel(*batch[i]));
-        });
-        for (std::size_t i = 0; i < batch.size(); ++i) add_lone_rays(*batch[i], followed[i]);
+/// The triangles that are traced: their places on the film by the tree of parts.
+std::vector<FilmTriangle> SeveralOpticsImages::traced_triangles() const {
+    const OpticPaths& paths = builder_.paths();
+    std::vector<FilmTriangle> traced;
+    const std::function<void(const PathCell&, const FilmTriangle&)> visit = [&](const PathCell& cell,
+                                                                                const FilmTriangle& at) {
+        if (cell.children == kNone) {
+            if (cell.leaf == kNone) return;
+            const PathLeaf& leaf = paths.leaves[cell.leaf];
+            if (leaf.method == LeafMethod::kTraced && leaf.centre.z > 0) traced.push_back(at);
+            return;
+        }
+        const auto& [a, b, c] = at.screen;
+        const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+        const std::array<std::array<Vec3, 3>, 4> parts{{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
+        for (std::size_t k = 0; k < 4; ++k)
+            visit(paths.cells[cell.children + static_cast<Id>(k)], {at.facet, parts[k]});
+    };
+    for (Id facet = 0; facet < paths.outline.facets.size(); ++facet)
+        visit(paths.cells[facet], {facet, corners_of(paths.outline, facet)});
+    return traced;
+}
+
+/// Where facets are traced, finer ones by exact rays, and the rays at borders of histories.
+void SeveralOpticsImages::add_film_parts() {
+    FilmPartsQuestion question;
+    question.film = Vec2(world_.scene.film.width, world_.scene.film.height);
+    question.follow = [this](Id facet, const Vec2& pixel) { return followed_from(facet, pixel); };
+    question.asks = [this](std::span<const Step> steps) { return choice_.word.is(steps); };
+    // Passing through without an interface is a step, and no letter.
+    if (choice_.word.asks()) question.most_steps = kManySteps;
+    const std::vector<FilmTriangle> traced = traced_triangles();
+    for (std::size_t first = 0; first < traced.size(); first += kTracedBatch) {
+        const auto batch = std::span(traced).subspan(first, std::min(kTracedBatch, traced.size() - first));
+        for (const FilmParts& parts : divide_film(question, batch)) {
+            std::vector<char> begun;
+            for (const FilmPart& part : parts.parts) add_film_part(parts, part, begun);
+        }
     }
 }
 
-std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) const {
+/// Whether a place of the surface may be the facet's, not one of another sheet before or behind it.
+bool SeveralOpticsImages::is_near_facet(Id facet, const Vec3& place) const {
+    if (builder_.paths().is_on_film()) return true;
+    const SurfaceGrid& grid = frame_.optics[builder_.context().optic].facets->grid();
+    std::array<Vec3, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = grid.points[grid.corner_point[grid.facets[facet][k]]];
+    const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
+    double size = 0;
+    for (const Vec3& one : corner) size = std::max(size, length(one - middle));
+    return length(place - middle) <= kFacetReach * size;
+}
+
+std::vector<PathSegment> SeveralOpticsImages::followed_from(Id facet, const Vec2& pixel) const {
     const PathWorld& world = followed_;
     const Id optic = builder_.context().optic;
     const Ray ray = history_query(world_, frame_, {}, {}).camera_ray(pixel);
     const std::optional<SurfaceHit> hit = world.optics[optic].tracer->first_hit(ray);
-    if (!hit) return {};
+    if (!hit || !is_near_facet(facet, hit->point.position)) return {};
     const Vec3 incoming = normalize_or_zero(ray.direction);
     return follow_paths(world, {{optic, incoming, hit->point.position, hit->point.normal,
                                  dot(incoming, hit->point.normal) <= 0},
@@ -264,17 +306,42 @@ std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) c
         .segments;
 }
 
-void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed) {
-    const RayMesh& outline = builder_.paths().outline;
-    const Vec2 film(world_.scene.film.width, world_.scene.film.height);
-    for (std::size_t i = 0; i < followed.size(); ++i) {
-        const PathSegment& segment = followed[i];
-        if (segment.parent == kNone || (segment.colours != kAllColours && segment.colours != 1)) continue;
-        History& history = history_of(followed, static_cast<Id>(i));
-        history.lone.push_back({lone_pixel(leaf), leaf.facet, segment.ray, reach_of(outline, leaf),
-                                may_be_on_film(outline, leaf, film)});
-        history.most_light = std::max(history.most_light, of_worst_colour(segment.weight));
+/// `begun`: which histories have a lone ray of these parts. Each gets one, for the surface may reach beyond
+/// its facets' rim.
+void SeveralOpticsImages::add_film_part(const FilmParts& parts, const FilmPart& part,
+                                        std::vector<char>& begun) {
+    std::array<Vec3, 3> screen;
+    for (std::size_t k = 0; k < 3; ++k) screen[k] = parts.places[part.corner[k]].screen;
+    const double reach = longest_side(screen);
+    const bool is_on_film = may_reach_film(screen, Vec2(world_.scene.film.width, world_.scene.film.height));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const FollowedPlace& place = parts.places[part.corner[k]];
+        for (const HistoryThere& there : place.histories) {
+            std::array<const PathSegment*, 3> segment{};
+            for (std::size_t j = 0; j < 3; ++j) segment[j] = parts.places[part.corner[j]].segment_of(there);
+            if (std::any_of(segment.begin(), segment.begin() + static_cast<std::ptrdiff_t>(k),
+                            [](const PathSegment* one) { return one != nullptr; }))
+                continue;  // told from that corner
+            History& history = history_of(place.segments, there.last);
+            history.most_light = std::max(history.most_light, of_worst_colour(segment[k]->weight));
+            const bool is_all = k == 0 && segment[1] && segment[2] && turn_of(segment) <= kMostSeedTurn;
+            if (is_all) add_fine_facet(history, parts.facet, screen, segment);
+            const auto number = static_cast<std::size_t>(&history - histories_.data());
+            begun.resize(std::max(begun.size(), number + 1), 0);
+            if (!is_all || part.is_open || !std::exchange(begun[number], 1))
+                history.lone.push_back(
+                    {Vec2(place.screen) / place.screen.z, parts.facet, segment[k]->ray, reach, is_on_film});
+        }
     }
+}
+
+void SeveralOpticsImages::add_fine_facet(History& history, Id facet, const std::array<Vec3, 3>& screen,
+                                         const std::array<const PathSegment*, 3>& ends) {
+    std::vector<Ray> rays;
+    for (const PathSegment* end : ends) rays.push_back({end->ray.origin, end->way * end->ray.direction});
+    append(history.mesh, {std::move(rays), {screen.begin(), screen.end()}, {{0, 1, 2}}});
+    history.grid_facet.push_back(facet);
+    history.proven.push_back(0);
 }
 
 }  // namespace trilens

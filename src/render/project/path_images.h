@@ -13,6 +13,7 @@
 #include "paths/facets/optic_paths.h"
 #include "paths/trace/follow.h"
 #include "render/frame/frame.h"
+#include "render/project/film_parts.h"
 #include "render/project/path_starts.h"
 #include "render/shoot/shoot.h"
 #include "specular/specular_point.h"
@@ -49,7 +50,7 @@ class SeveralOpticsImages {
 
   private:
     /// Rays of traced parts that one search starts from.
-    static constexpr std::size_t kLoneStarts = 6;
+    static constexpr std::size_t kLoneStarts = 10;
 
     /// A film position in a part of a facet that has no corner rays, and where its path leaves the optics.
     struct LoneRay {
@@ -64,6 +65,7 @@ class SeveralOpticsImages {
         std::vector<Step> steps;
         std::vector<PathSegment> chain;
         std::vector<Colours> colours;            // per step
+        RayMesh mesh;                            // until the seeds are made of it
         std::unique_ptr<MeshPointImages> seeds;  // null: no facet has it
         std::vector<Id> grid_facet;              // per facet of the seeds' mesh
         std::vector<char> proven;                // likewise: all its rays have the history
@@ -83,9 +85,13 @@ class SeveralOpticsImages {
     class Search;
 
     void add_nodes();
-    void add_lone_rays();
-    void add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed);
-    std::vector<PathSegment> followed_from(const Vec2& pixel) const;
+    std::vector<FilmTriangle> traced_triangles() const;
+    void add_film_parts();
+    void add_film_part(const FilmParts& parts, const FilmPart& part, std::vector<char>& begun);
+    static void add_fine_facet(History& history, Id facet, const std::array<Vec3, 3>& screen,
+                               const std::array<const PathSegment*, 3>& ends);
+    bool is_near_facet(Id facet, const Vec3& place) const;
+    std::vector<PathSegment> followed_from(Id facet, const Vec2& pixel) const;
     History& history_of(const std::vector<PathSegment>& segments, Id last);
     void drop_histories();
     void get_ready();

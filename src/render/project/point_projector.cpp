@@ -42,7 +42,8 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
       request_(request),
       frame_(make_frame(world, frame_of_seeds(request), {})),
       sight_(world, frame_, request.refine) {
-    if (!(request.min_weight >= 0)) throw UsageError("the least weight of an image is a number of at least 0");
+    if (!(request.min_weight >= 0))
+        throw UsageError("the least weight of an image is a number of at least 0");
     object_tracer(world);
     Box box;
     const std::optional<Ray> middle = exact_ray(camera_, 0.5 * Vec2(camera_.film.width, camera_.film.height));
@@ -64,7 +65,7 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
 
 /// Whether light may come over several optics at all: not over one that no ray that leaves it meets again.
 bool PointProjector::may_have_several() const {
-    if (request_.path.asks() ? request_.path.size() == 1 : world_.scene.render.max_depth == 0) return false;
+    if (request_.path.asks() ? request_.path.size() <= 1 : world_.scene.render.max_depth == 0) return false;
     const std::vector<PathOptic>& optics = path_world(world_).optics;
     return !optics.empty() && !(optics.size() == 1 && optics[0].mirror && optics[0].convex);
 }
@@ -313,7 +314,9 @@ void PointProjector::project(std::span<const ProjectedPoint> points, std::span<c
         for (const std::vector<SpecularSearch>& on_path : searched) most += on_path[k].images.size();
         found.images.reserve(most);
         if (camera_mesh_) add_camera_mesh(point, found);
-        if (!camera_mesh_ && world_.scene.render.direct && !request_.path.asks()) add_direct(asked, found);
+        if (!camera_mesh_ && world_.scene.render.direct &&
+            (!request_.path.asks() || request_.path.is_direct()))
+            add_direct(asked, found);
         for (std::size_t i = 0; i < paths_.size(); ++i)
             add_optic_path(paths_[i], point, searched[i][k], found);
         for (const auto& several : several_) add_several(*several, point, found);

@@ -20,8 +20,8 @@ bool same_image(const SeveralOpticsImage& a, const SeveralOpticsImage& b) {
 
 }  // namespace
 
-/// Those that pass the point at the smallest angles, forward; the first of equals first. `off_film`: parts
-/// that lie off the film count, too.
+/// Those that pass the point at the smallest angles, forward, one of each facet; the first of equals first.
+/// `off_film`: parts that lie off the film count, too.
 Few<std::size_t, SeveralOpticsImages::kLoneStarts> SeveralOpticsImages::History::nearest_lone(
     const Vec3& point, bool off_film) const {
     Few<std::size_t, kLoneStarts> nearest;
@@ -32,8 +32,16 @@ Few<std::size_t, SeveralOpticsImages::kLoneStarts> SeveralOpticsImages::History:
         const double along = dot(way, lone[i].exit.direction), square = along * along / dot(way, way);
         const bool is_full = nearest.size() == kLoneStarts;
         if (!(along > 0) || (is_full && !(square > squared_cosine.back()))) continue;
-        if (!is_full) nearest.push_back(i), squared_cosine.push_back(square);
-        std::size_t at = nearest.size() - 1;
+        // One of a facet.
+        std::size_t at = 0;
+        while (at < nearest.size() && lone[nearest[at]].facet != lone[i].facet) ++at;
+        if (at < nearest.size()) {
+            if (!(square > squared_cosine[at])) continue;
+        } else if (is_full) {
+            --at;
+        } else {
+            nearest.push_back(i), squared_cosine.push_back(square);
+        }
         for (; at > 0 && square > squared_cosine[at - 1]; --at) {
             nearest[at] = nearest[at - 1];
             squared_cosine[at] = squared_cosine[at - 1];
@@ -171,7 +179,7 @@ void SeveralOpticsImages::Search::from_lone(std::size_t lone) {
         }))
         return;
     const Start start{path.events, ray.pixel, ray.facet};
-    if (!solve(start, nullptr)) refine_on_film(start, ray.exit);
+    if (!solve(start, nullptr) && !chain_eye(images_.frame_.camera)) refine_on_film(start, ray.exit);
 }
 
 /// From the facets that image the point, and from the lone rays that pass it at the smallest angles; of parts

@@ -16,15 +16,16 @@ namespace trilens {
 EventWord::EventWord(std::string_view letters) : letters_(letters) {
     if (letters.empty() || letters.size() > kMost)
         throw UsageError(fmt::format("a path has 1..{} events, not {}", kMost, letters.size()));
-    if (letters.find_first_not_of("RT?") != std::string_view::npos)
-        throw UsageError(fmt::format(
-            "the path \"{}\" holds a letter other than R (reflected), T (transmitted) and ? (either)",
-            letters));
+    if (!is_direct() && letters.find_first_not_of("RT?") != std::string_view::npos)
+        throw UsageError(
+            fmt::format("the path \"{}\" holds a letter other than R (reflected), T (transmitted) and "
+                        "? (either), and is not D (seen directly)",
+                        letters));
 }
 
 bool EventWord::allows(std::size_t place, Event event) const {
     if (letters_.empty() || event == Event::kPass) return true;
-    if (place >= letters_.size()) return false;
+    if (place >= size()) return false;
     return letters_[place] == '?' || (letters_[place] == 'R') == (event == Event::kReflect);
 }
 
@@ -40,7 +41,7 @@ std::optional<std::size_t> EventWord::place_after(std::span<const Step> steps) c
 
 bool EventWord::is(std::span<const Step> steps) const {
     const std::optional<std::size_t> place = place_after(steps);
-    return place && (letters_.empty() || *place == letters_.size());
+    return place && (letters_.empty() || *place == size());
 }
 
 bool EventWord::may_begin(std::span<const Step> steps) const {
@@ -188,7 +189,7 @@ void Shooter::shoot(const StartingRay& start, ShotRay& shot, std::vector<PathEve
     const FirstSurface first = first_surface(paths_, objects_, ray, start.reach);
     if (first.optic != kNone) {
         follow(ray, first, shot, events);
-    } else if (word_.asks()) {
+    } else if (word_.asks() && !word_.is_direct()) {
         shot.state = ShotState::kOtherPath;
     } else {
         if (first.object.seen())

@@ -20,12 +20,14 @@ class EventWord {
     static constexpr std::size_t kMost = 64;  // letters
 
     EventWord() = default;
-    /// Throws UsageError for other letters, none at all, or more than kMost.
+    /// "D", or up to kMost letters R, T and ?. Throws UsageError for others, and none at all.
     explicit EventWord(std::string_view letters);
 
     bool operator==(const EventWord&) const = default;
     bool asks() const { return !letters_.empty(); }
-    std::size_t size() const { return letters_.size(); }
+    /// Of events: 0 of "D", what is seen directly.
+    std::size_t size() const { return is_direct() ? 0 : letters_.size(); }
+    bool is_direct() const { return letters_ == "D"; }
     const std::string& letters() const { return letters_; }
 
     /// Whether this event may be the one at letter `place`; of an empty word always.
