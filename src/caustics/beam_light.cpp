@@ -185,7 +185,8 @@ void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const
     const double bent = reach_beyond_faces();
     const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
     tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? bent : 0), [&](Id index) {
-        Way way = way_to(beams_, beams_.beams[index], plane, kSamePlace * space_.size);
+        Way way =
+            way_to(corners_of(beams_, beams_.beams[index]).end, plane, kSamePlace * space_.size);
         if (way == Way::kStopped) return;
         if (receiver.exact) way = Way::kUnknown;
         const auto use_one = [&](const BeamCorners& corners, const FallenBeam& fallen) {

@@ -9,9 +9,9 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "caustics/beam_grid.h"
+#include "caustics/beams/beam_grid.h"
 #include "caustics/beam_tree.h"
-#include "caustics/beams.h"
+#include "caustics/beams/beams.h"
 #include "caustics/exact_arrivals.h"
 #include "caustics/footprint.h"
 #include "caustics/receiver_faces.h"

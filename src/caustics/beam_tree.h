@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "caustics/beams.h"
+#include "caustics/beams/beams.h"
 
 namespace trilens {
 

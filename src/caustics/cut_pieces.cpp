@@ -111,6 +111,11 @@ void cut_here(const std::array<Vec2, 6>& curve, const PieceGrid& grid, CutPieces
                 at[k].y = hn::Add(at[k].y, hn::Mul(weight, number(curve[c].y)));
             }
         }
+        const Truth apart = are_apart(at, half);
+        if (hn::AllTrue(kTag, apart)) {
+            hn::Store(zero, kTag, cut.share + first);
+            continue;
+        }
         Truth inside = hn::Le(hn::Abs(at[0].x), half);
         for (const Place& place : at)
             inside = hn::And(inside, hn::And(hn::Le(hn::Abs(place.x), half), hn::Le(hn::Abs(place.y), half)));
@@ -126,7 +131,7 @@ void cut_here(const std::array<Vec2, 6>& curve, const PieceGrid& grid, CutPieces
         for (int k = 0; k < 3; ++k) add_edge(off[k], off[(k + 1) % 3], square, below);
         const Number twice_area = cross(minus(at[1], at[0]), minus(at[2], at[0]));
         const Number share = hn::Div(hn::Neg(below.area), twice_area);
-        const Truth meets = hn::AndNot(are_apart(at, half), hn::Gt(share, zero));
+        const Truth meets = hn::AndNot(apart, hn::Gt(share, zero));
         const Number thrice = hn::Mul(number(3), below.area);
         const Place middle{hn::Div(below.x, thrice), hn::Div(below.y, thrice)};
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "caustics/footprint.h"
-#include "caustics/light_paths.h"
+#include "caustics/beams/light_paths.h"
 
 namespace trilens {
 

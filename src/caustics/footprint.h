@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "caustics/beams.h"
+#include "caustics/beams/beams.h"
 #include "shade/receiver.h"
 
 namespace trilens {

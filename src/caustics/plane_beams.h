@@ -1,6 +1,7 @@
 // Bounding-volume hierarchy, in two dimensions, over where a light's beams fall on one plane.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -17,7 +18,7 @@ namespace trilens {
 /// What the rays at a beam's ends say about the way to a plane.
 enum class Way { kFree, kStopped, kUnknown };
 /// `same_place`: world units.
-Way way_to(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double same_place);
+Way way_to(const BeamEnds& end, const ReceiverPlane& plane, double same_place);
 
 /// How far light may fall from its place.
 struct PlaneBeamsParams {
@@ -78,7 +79,6 @@ class PlaneBeams {
         Way way = Way::kUnknown;
         int sides = 4;          // of its pieces
         bool is_plain = false;  // all of it comes, through air
-        std::array<Strip, 3> strips{};
         Vec3 mean_light{0};
     };
     struct Flat {  // what the plane cuts, or lies askew to
@@ -100,7 +100,31 @@ class PlaneBeams {
         std::uint32_t skip = 0;            // the node after this one's subtree
         std::uint32_t first = 0, end = 0;  // a leaf's entries in order_
     };
-    struct Maker;
+    /// Around where an entry falls.
+    struct Bounds {
+        Box2 box;
+        std::array<Strip, 3> strips;
+        bool meets(const Box2& asked, const Parallelogram& footprint) const {
+            return box.meets(asked) && std::none_of(strips.begin(), strips.end(), [&](const Strip& strip) {
+                       return footprint.is_beside(strip);
+                   });
+        }
+    };
+    /// What becomes of one beam, and the ends of that which are no beam's.
+    struct Parts {
+        std::vector<Curved> curved;
+        std::vector<Flat> flat;
+        std::vector<std::unique_ptr<const BeamEnd>> ends;
+    };
+    struct Target {
+        const Source& source;
+        const ReceiverPlane& plane;
+        const PlaneBeamsParams& params;
+        Vec2 half;  // of the rectangle around the face
+        const Progress& progress;
+    };
+    struct PartsMaker;
+    static Parts parts_of(const Target& target, Id beam);
     /// From the plane's coordinates to the footprint's.
     struct Map {
         Vec2 origin{0};
@@ -108,22 +132,22 @@ class PlaneBeams {
         Vec2 operator()(const Vec2& at) const { return origin + turn * at; }
     };
     template <typename Use>
-    void for_each_near(const Box2& asked, const Use& use) const;
+    void for_each_near(const Parallelogram& asked, const Use& use) const;
     static std::array<Vec2, 6> fallen_on(const Curved& one, const Map& map);
     // Of where a curved beam falls, in a footprint's coordinates.
     static bool is_inside(const std::array<Vec2, 6>& at);
-    static std::array<Strip, 3> strips_around(const std::array<Vec2, 6>& at);
+    template <std::size_t kCount>
+    static Bounds bounds_of(const std::array<Vec2, kCount>& hull);
     static Vec3 light_of(const Curved& one, const std::array<Vec2, 6>& at);
     template <typename Use>
     static void use_parts(const Curved& one, const std::array<Vec2, 6>& at, const Use& use);
     template <typename Use>
     static void use_flat(const Flat& one, const Map& map, double half, const Use& use);
-    /// Around the Bezier points of a quadratic triangle.
     static Box2 hull_box(const std::array<Vec2, 6>& at);
     Map map_to(const ReceiverPlane& footprint) const;
     static Parallelogram parallelogram_of(const ReceiverPlane& footprint, const Map& map);
     static Box2 box_of(const Parallelogram& footprint);
-    Box2 box_of(std::uint32_t entry) const;
+    Bounds bounds_of(std::uint32_t entry) const;
     void build(std::uint32_t first, std::uint32_t end);
 
     ReceiverPlane plane_;
@@ -132,19 +156,20 @@ class PlaneBeams {
     std::vector<Flat> flat_;
     std::vector<Node> nodes_;           // depth first
     std::vector<std::uint32_t> order_;  // of the curved, and after them of the flat
-    std::vector<Box2> boxes_;  // of all of them: until they are in a tree by number, then in its order
+    std::vector<Bounds> bounds_;        // of all: until they are in a tree by number, then in its order
 };
 
 template <typename Use>
-void PlaneBeams::for_each_near(const Box2& asked, const Use& use) const {
+void PlaneBeams::for_each_near(const Parallelogram& asked, const Use& use) const {
+    const Box2 around = box_of(asked);
     for (std::size_t n = 0; n < nodes_.size();) {
         const Node& node = nodes_[n];
-        if (!node.box.meets(asked)) {
+        if (!node.box.meets(around)) {
             n = node.skip;
             continue;
         }
         for (std::uint32_t i = node.first; i < node.end; ++i)
-            if (boxes_[i].meets(asked)) use(order_[i]);
+            if (bounds_[i].meets(around, asked)) use(order_[i]);
         ++n;
     }
 }
@@ -152,7 +177,7 @@ void PlaneBeams::for_each_near(const Box2& asked, const Use& use) const {
 template <typename Use>
 void PlaneBeams::for_each_piece(const ReceiverPlane& point, const Use& use) const {
     const Map map = map_to(point);
-    for_each_near(box_of(parallelogram_of(point, map)), [&](std::uint32_t entry) {
+    for_each_near(parallelogram_of(point, map), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) return use_flat(flat_[entry - curved_.size()], map, 0, use);
         const Curved& one = curved_[entry];
         CurvedBeam{one.corners, {}}.for_each_piece({fallen_on(one, map), one.curve.light}, 0, one.sides,
@@ -166,8 +191,7 @@ template <typename UseLight, typename Use>
 void PlaneBeams::for_each_part(const ReceiverPlane& footprint, bool sums, const UseLight& use_light,
                                const Use& use) const {
     const Map map = map_to(footprint);
-    const Parallelogram asked = parallelogram_of(footprint, map);
-    for_each_near(box_of(asked), [&](std::uint32_t entry) {
+    for_each_near(parallelogram_of(footprint, map), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) {
             use_flat(flat_[entry - curved_.size()], map, 0.5,
                      [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
@@ -177,8 +201,6 @@ void PlaneBeams::for_each_part(const ReceiverPlane& footprint, bool sums, const 
             return;
         }
         const Curved& one = curved_[entry];
-        for (const Strip& strip : one.strips)
-            if (asked.is_beside(strip)) return;
         const std::array<Vec2, 6> at = fallen_on(one, map);
         if (sums && one.is_plain) {
             const Vec3 light = light_of(one, at);

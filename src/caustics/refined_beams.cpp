@@ -135,6 +135,17 @@ BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const 
     return end;
 }
 
+void RefinedBeams::look_ahead(Id beam, BeamEnd& end) const {
+    const LightHistory& history = beams_->histories[beams_->beams[beam].history];
+    if (history.medium != kNone) return;
+    const Ray ray{end.origin, end.direction};
+    const auto next = next_optic(*space_.optics, {ray, history.steps.back().optic, {}});
+    const Hit hit = space_.objects->first_hit(ray);
+    const bool is_first = hit.seen() && (!next || hit.t <= next->distance + next->touch);
+    end.object = is_first ? hit.t : INFINITY;
+    end.optic = next && !is_first ? next->distance : INFINITY;
+}
+
 void RefinedBeams::divide(Id beam, const Ends& end, BeamDivision& into) const {
     for (std::size_t k = 0; k < 3; ++k) into.middle[k] = middle(beam, *end[(k + 1) % 3], *end[(k + 2) % 3]);
 }

@@ -13,7 +13,7 @@
 #include "base/util/parallel.h"
 #include "caustics/curved_beam.h"
 #include "caustics/footprint.h"
-#include "caustics/light_paths.h"
+#include "caustics/beams/light_paths.h"
 
 namespace trilens {
 
@@ -65,6 +65,8 @@ class RefinedBeams {
     }
     /// The exact ray of the beam's history in the middle between two others, in either order.
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
+    /// Finds what the ray of an end in air meets; of one in glass nothing.
+    void look_ahead(Id beam, BeamEnd& end) const;
     /// A part of a beam, with its part of the film.
     BeamCorners corners(Id beam, const BeamEnds& end) const;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/raymesh/ray_mesh.h"
-#include "caustics/light_paths.h"
+#include "caustics/beams/light_paths.h"
 #include "intersect/box_tree.h"
 #include "render/world/world.h"
 #include "volume/volume_integral.h"

@@ -1,4 +1,4 @@
-#include "caustics/light_paths.h"
+#include "caustics/beams/light_paths.h"
 
 namespace trilens {
 namespace {

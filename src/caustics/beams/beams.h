@@ -4,11 +4,12 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
-#include "caustics/beam_grid.h"
+#include "caustics/beams/beam_grid.h"
 
 namespace trilens {
 
@@ -18,7 +19,8 @@ struct BeamEnd {
     Vec3 origin{0};              // on the last optic
     Vec3 direction{0};           // unit
     Vec3 arriving{0}, light{0};  // see LightPath
-    double optic = 0, object = 0;
+    // Ways to the next optic, and to the first object before it; nothing is known where the latter is 0.
+    double optic = std::numeric_limits<double>::infinity(), object = 0;
     double film = 0;  // of the light's film per unit of place: LightWindow::density
     // Area across the ray that a unit of places covers at distance t: spread[0] + t spread[1] + t^2
     // spread[2], signed; 0 where beams fold. By the mean of the beams' slopes around the end, of second order

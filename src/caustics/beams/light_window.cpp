@@ -1,4 +1,4 @@
-#include "caustics/light_window.h"
+#include "caustics/beams/light_window.h"
 
 #include <algorithm>
 #include <cmath>

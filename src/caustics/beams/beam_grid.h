@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/util/error.h"
-#include "caustics/light_paths.h"
+#include "caustics/beams/light_paths.h"
 
 namespace trilens {
 

@@ -1,4 +1,4 @@
-#include "caustics/beams.h"
+#include "caustics/beams/beams.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "caustics/light_window.h"
+#include "caustics/beams/light_window.h"
 #include "paths/trace/follow.h"
 #include "paths/trace/path_world.h"
 

@@ -1,4 +1,4 @@
-#include "caustics/beam_grid.h"
+#include "caustics/beams/beam_grid.h"
 
 #include <algorithm>
 #include <cmath>
