@@ -21,10 +21,6 @@ constexpr double kMostBent = 2;
 /// What falls on faces smaller than this share of the scene is looked up beam by beam.
 constexpr double kSmallFace = 0.004;
 
-/// Beams whose light on a plane is below this share of the light's mean over the scene are not looked at
-/// closely.
-constexpr double kFaintShare = 0.05;
-
 /// Of the making of beams: until windows are divided, and until their borders are found.
 constexpr double kDividingShare = 0.2, kBorderShare = 0.6;
 

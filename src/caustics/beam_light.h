@@ -9,8 +9,8 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "caustics/beams/beam_grid.h"
 #include "caustics/beam_tree.h"
+#include "caustics/beams/beam_grid.h"
 #include "caustics/beams/beams.h"
 #include "caustics/exact_arrivals.h"
 #include "caustics/footprint.h"

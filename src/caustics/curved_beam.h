@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "caustics/beams/quadratic.h"
 #include "caustics/footprint.h"
 
 namespace trilens {
@@ -42,12 +43,6 @@ Vec3 mean_light(const std::array<Vec3, 6>& light, int sides);
 
 /// How far the farthest middle lies from that of its chord.
 double bulge_on_plane(const std::array<Vec2, 6>& at);
-
-/// Quadratic Lagrange weights of the corners and of the middles across from them.
-inline std::array<double, 6> quadratic_weights(const Vec3& w) {
-    return {w.x * (2 * w.x - 1), w.y * (2 * w.y - 1), w.z * (2 * w.z - 1),
-            4 * w.y * w.z,       4 * w.z * w.x,       4 * w.x * w.y};
-}
 
 /// Whether the triangles' hull lies outside of the square [-half, half]^2 by more than `room`.
 template <std::size_t kCount>

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "caustics/footprint.h"
 #include "caustics/beams/light_paths.h"
+#include "caustics/footprint.h"
 
 namespace trilens {
 

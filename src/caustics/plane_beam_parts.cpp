@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "caustics/beams/quadratic.h"
 #include "caustics/plane_beams.h"
 
 namespace trilens {
@@ -13,14 +14,9 @@ namespace {
 
 /// Halvings of a beam's sides where its quadratic is wrong, and where there is none.
 constexpr int kMostHalvings = 5, kMostCuts = 4;
-/// A quadratic may be off by this share of the tolerance, and of a path that carries less than the brightest
-/// by so much more of it.
-constexpr double kMostOff = 0.25, kFaintOff = 0.05;
 /// Beams that the plane cuts off are left flat, which loses some of their light, where it is this share of
 /// what is faint.
 constexpr double kFaintFlat = 0.05;
-/// A beam whose sides are straight to so many times that needs no look at its quadratic.
-constexpr double kNearlyStraight = 6;
 /// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, and its
 /// quarters' areas and its light differ.
 constexpr double kOneBends = 0.02, kOneDiffers = 0.03;

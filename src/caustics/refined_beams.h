@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/util/parallel.h"
+#include "caustics/beams/light_paths.h"
 #include "caustics/curved_beam.h"
 #include "caustics/footprint.h"
-#include "caustics/beams/light_paths.h"
 
 namespace trilens {
 

@@ -43,7 +43,12 @@ void BeamGrid::start(int cells) {
             triangles_.push_back({{c, a, b}, 0});
             triangles_.push_back({{a, c, d}, 0});
         }
-    for (Id t = 0; t < triangles_.size(); ++t) link(t);
+    for (Id t = 0; t < triangles_.size(); ++t) {
+        link(t);
+        nodes_.push_back({triangles_[t].corner, t, kNone});
+        node_of_.push_back(t);
+    }
+    root_count_ = static_cast<Id>(nodes_.size());
 }
 
 void BeamGrid::trace_new_corners(const Progress& progress) {
@@ -92,8 +97,15 @@ void BeamGrid::bisect(Id triangle, Id middle) {
     const auto [a, b, c] = parent.corner;
     triangles_[triangle] = {{c, a, middle}, parent.level + 1};
     triangles_.push_back({{b, c, middle}, parent.level + 1});
+    const Id added = static_cast<Id>(triangles_.size() - 1);
     link(triangle);
-    link(static_cast<Id>(triangles_.size() - 1));
+    link(added);
+    Node& node = nodes_[node_of_[triangle]];
+    node.triangle = kNone, node.first_child = static_cast<Id>(nodes_.size());
+    node_of_[triangle] = node.first_child;
+    node_of_.push_back(node.first_child + 1);
+    nodes_.push_back({triangles_[triangle].corner, triangle, kNone});
+    nodes_.push_back({triangles_[added].corner, added, kNone});
 }
 
 /// The one on the other side of the base is bisected with it, and before that until its base is the same.
@@ -170,6 +182,7 @@ bool BeamGrid::is_too_coarse(const Triangle& triangle, const BeamGridParams& par
 }
 
 void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
+    tolerance_ = params.tolerance * space_.size;
     start(params.first_cells);
     std::vector<Id> asked(triangles_.size());
     for (Id t = 0; t < asked.size(); ++t) asked[t] = t;

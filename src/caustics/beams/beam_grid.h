@@ -32,6 +32,13 @@ class BeamGrid {
         int level = 0;
     };
 
+    /// Of the tree of bisections: a triangle, or two nodes that follow each other.
+    struct Node {
+        std::array<Id, 3> corner{};  // as Triangle has them
+        Id triangle = kNone;         // kNone: it was bisected
+        Id first_child = kNone;
+    };
+
     BeamGrid(const LightSpace& space, const BeamSource& source, const LightWindow& window, Id first);
 
     /// Throws Interrupted soon after `progress` says so.
@@ -39,6 +46,17 @@ class BeamGrid {
 
     const LightWindow& window() const { return window_; }
     const std::vector<Triangle>& triangles() const { return triangles_; }
+    const std::vector<Node>& nodes() const { return nodes_; }
+    /// Of nodes that nothing was bisected to: the first ones.
+    Id root_count() const { return root_count_; }
+    /// The corner in the middle between two others; kNone: none was looked at.
+    Id middle_between(Id a, Id b) const {
+        const auto at = middles_.find(edge_of(a, b));
+        return at == middles_.end() ? kNone : at->second;
+    }
+    /// How far light may fall from its place, world units.
+    double tolerance() const { return tolerance_; }
+    double scene_size() const { return space_.size; }
     const Vec2& place(Id corner) const { return places_[corner]; }
     const std::vector<LightPath>& paths(Id corner) const { return paths_[corner].paths; }
     const CutPaths& cut(Id corner) const { return paths_[corner].cut; }
@@ -73,6 +91,10 @@ class BeamGrid {
     std::vector<LightPaths> paths_;  // of the first traced_ corners
     std::size_t traced_ = 0;
     std::vector<Triangle> triangles_;
+    std::vector<Node> nodes_;
+    std::vector<Id> node_of_;  // triangle
+    Id root_count_ = 0;
+    double tolerance_ = 0;
     std::unordered_map<Edge, std::array<Id, 2>> sides_;  // triangles on both sides
     std::unordered_map<Edge, Id> middles_;
     double brightest_ = 0;  // path so far: the sum of its colours

@@ -38,6 +38,7 @@ struct LightBeam {
     Id history = kNone;
     double measure = 0;  // of the light's film
     Id window = 0;       // of Beams::windows
+    Vec3 flux{0};        // that leaves with it, as its parts' exact rays have it
 };
 
 struct Beams {
@@ -58,6 +59,14 @@ struct Beams {
     Vec3 flux_on_objects() const;
     Vec3 flux_away() const;
 };
+
+/// A beam's part of the film times the mean of of(end) over its ends.
+template <typename Of>
+Vec3 beam_integral(const Beams& beams, const LightBeam& beam, const Of& of) {
+    Vec3 sum(0);
+    for (const Id end : beam.end) sum += of(beams.ends[end]);
+    return beam.measure / 3 * sum;
+}
 
 /// Three rays and the part of the light's film between them.
 struct BeamCorners {

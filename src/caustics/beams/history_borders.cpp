@@ -1,0 +1,141 @@
+#include "caustics/beams/history_borders.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace trilens {
+namespace {
+
+/// Of a side, until the brightest path's border is found; a half as bright path's needs one less.
+constexpr int kBisections = 12;
+
+/// Borders of one side that bisection has not told apart yet.
+struct BorderSearch {
+    std::vector<HistoryBorder*> borders;
+    Vec2 low{0}, high{0};  // where the histories are, and are not
+    int bisections = 0;
+
+    /// Whether the borders' paths, as bright as they are where they were met last, want more.
+    bool is_open(double brightest) const {
+        double strength = 0;
+        for (const HistoryBorder* border : borders)
+            strength = std::max(strength, strength_of(border->path.light));
+        return !borders.empty() && std::ldexp(strength, kBisections - bisections) > brightest;
+    }
+
+    /// What becomes of it at the middle: of those that are there, and those that are not.
+    std::array<BorderSearch, 2> bisect(const BeamGrid& grid) const {
+        std::vector<const std::vector<Step>*> only;
+        for (const HistoryBorder* border : borders) only.push_back(&border->like->steps);
+        const Vec2 middle = 0.5 * (low + high);
+        const LightPaths found = grid.paths_at(middle, only);
+        std::array<BorderSearch, 2> parts{BorderSearch{{}, middle, high, bisections + 1},
+                                          BorderSearch{{}, low, middle, bisections + 1}};
+        for (HistoryBorder* border : borders) {
+            const LightPath* same = find_history(found.paths, *border->like);
+            if (same) border->place = middle, border->path = *same;
+            parts[same ? 0 : 1].borders.push_back(border);
+        }
+        return parts;
+    }
+};
+
+/// Of all borders of one side. Where several histories end together they are followed together.
+void find_borders_on_side(const BeamGrid& grid, std::span<HistoryBorder* const> borders,
+                          const LoopProgress& progress) {
+    std::vector<BorderSearch> searches;
+    for (HistoryBorder* border : borders) {
+        border->place = grid.place(border->inside);
+        border->path = *border->like;
+        const auto same = std::find_if(searches.begin(), searches.end(), [&](const BorderSearch& one) {
+            return one.borders[0]->inside == border->inside && one.borders.size() < FollowParams::kMostOnly;
+        });
+        if (same != searches.end())
+            same->borders.push_back(border);
+        else
+            searches.push_back({{border}, grid.place(border->inside), grid.place(border->outside), 0});
+    }
+    while (!searches.empty()) {
+        progress.stop_if_cancelled();
+        const BorderSearch search = std::move(searches.back());
+        searches.pop_back();
+        for (BorderSearch& part : search.bisect(grid))
+            if (part.is_open(grid.brightest())) searches.push_back(std::move(part));
+    }
+}
+
+using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<VeilSurface>, int, Id, bool>;
+
+HistoryKey key_of(const LightHistory& history) {
+    std::vector<std::uint64_t> steps;
+    for (const Step& step : history.steps)
+        steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
+    return {std::move(steps), history.veils, history.colours, history.medium, history.has_start};
+}
+
+}  // namespace
+
+GridHistories::GridHistories(const BeamGrid& grid, std::vector<LightHistory>& all)
+    : grid_(grid), at_corner_(grid.corner_count()) {
+    std::map<HistoryKey, Id> number;
+    for (const LightHistory& one : all) number.try_emplace(key_of(one), static_cast<Id>(number.size()));
+    for (Id corner = 0; corner < at_corner_.size(); ++corner)
+        for (const LightPath& path : grid.paths(corner)) {
+            const auto [at, is_new] = number.try_emplace(key_of(path), static_cast<Id>(all.size()));
+            if (is_new) all.push_back(path);
+            at_corner_[corner].push_back(at->second);
+        }
+}
+
+const LightPath* GridHistories::path_at(Id corner, Id history) const {
+    const auto& ids = at_corner_[corner];
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        if (ids[i] == history) return &grid_.paths(corner)[i];
+    return nullptr;
+}
+
+std::vector<Id> GridHistories::histories_of(const BeamGrid::Triangle& triangle) const {
+    std::vector<Id> all;
+    for (const Id corner : triangle.corner)
+        for (const Id history : at_corner_[corner])
+            if (std::find(all.begin(), all.end(), history) == all.end()) all.push_back(history);
+    return all;
+}
+
+void GridHistories::find_borders(const Progress& progress) {
+    for (const BeamGrid::Triangle& triangle : grid_.triangles())
+        for (const Id history : histories_of(triangle))
+            for (std::size_t k = 0; k < 3; ++k) {
+                Id inside = triangle.corner[k], outside = triangle.corner[(k + 1) % 3];
+                const LightPath *one = path_at(inside, history), *other = path_at(outside, history);
+                if ((one != nullptr) == (other != nullptr)) continue;
+                if (!one) std::swap(inside, outside);
+                if (!border_.try_emplace({inside, outside, history}, borders_.size()).second) continue;
+                borders_.push_back({inside, outside, one ? one : other, {}, {}});
+            }
+    std::map<std::pair<Id, Id>, std::vector<HistoryBorder*>> by_side;
+    for (HistoryBorder& border : borders_)
+        by_side[std::minmax(border.inside, border.outside)].push_back(&border);
+    std::vector<const std::vector<HistoryBorder*>*> sides;
+    for (const auto& [side, borders] : by_side) sides.push_back(&borders);
+    LoopProgress done(progress, static_cast<double>(sides.size()));
+    parallel_for(sides.size(), 4, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) find_borders_on_side(grid_, *sides[i], done);
+        done.add(static_cast<double>(to - from));
+    });
+}
+
+const HistoryBorder* GridHistories::border_between(Id inside, Id outside, Id history) const {
+    for (;;) {
+        const auto found = border_.find({inside, outside, history});
+        if (found != border_.end()) return &borders_[found->second];
+        const Id middle = grid_.middle_between(inside, outside);
+        if (middle == kNone) return nullptr;
+        (path_at(middle, history) ? inside : outside) = middle;
+    }
+}
+
+}  // namespace trilens

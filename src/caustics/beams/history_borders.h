@@ -1,0 +1,53 @@
+// Where histories end along the sides of a light's triangles: bisection by exact rays.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "base/util/parallel.h"
+#include "caustics/beams/beam_grid.h"
+
+namespace trilens {
+
+/// The last place at which a history is, on the way between two corners of which one has it.
+struct HistoryBorder {
+    Id inside = kNone, outside = kNone;
+    const LightPath* like = nullptr;
+    Vec2 place{0};
+    LightPath path;
+};
+
+/// The histories at the corners of a divided window, by numbers, and where they end between two of them.
+class GridHistories {
+  public:
+    /// `all`: the histories that have numbers already; those that have none are added. The grid must live
+    /// longer.
+    GridHistories(const BeamGrid& grid, std::vector<LightHistory>& all);
+
+    /// Finds the borders along the sides of all triangles. Throws Interrupted soon after `progress` says so.
+    void find_borders(const Progress& progress);
+
+    /// Of a corner; null: it has not that history.
+    const LightPath* path_at(Id corner, Id history) const;
+    /// The border on a triangle's side, of which one end has the history.
+    const HistoryBorder& border(Id inside, Id outside, Id history) const {
+        return borders_[border_.at({inside, outside, history})];
+    }
+    /// The border along a side that may have been divided, of which one end has the history; null: what is
+    /// known of its parts leaves open where that ends.
+    const HistoryBorder* border_between(Id inside, Id outside, Id history) const;
+
+  private:
+    using Key = std::tuple<Id, Id, Id>;  // inside, outside, history
+
+    std::vector<Id> histories_of(const BeamGrid::Triangle& triangle) const;
+
+    const BeamGrid& grid_;
+    std::vector<std::vector<Id>> at_corner_;  // per corner and path: its history
+    std::map<Key, std::size_t> border_;
+    std::vector<HistoryBorder> borders_;
+};
+
+}  // namespace trilens

@@ -1,0 +1,26 @@
+// Quadratic interpolation over a triangle (isoparametric six-node element), and how far it may be off.
+#pragma once
+
+#include <array>
+
+#include "base/math/vec.h"
+
+namespace trilens {
+
+/// Quadratic Lagrange weights of the corners and of the middles across from them.
+inline std::array<double, 6> quadratic_weights(const Vec3& w) {
+    return {w.x * (2 * w.x - 1), w.y * (2 * w.y - 1), w.z * (2 * w.z - 1),
+            4 * w.y * w.z,       4 * w.z * w.x,       4 * w.x * w.y};
+}
+
+/// A curved beam may be off by this share of the tolerance, and of a path that carries less than the
+/// brightest by so much more of it.
+inline constexpr double kMostOff = 0.25, kFaintOff = 0.05;
+/// A beam whose sides are straight to so many times that needs no look at its quadratic.
+inline constexpr double kNearlyStraight = 6;
+
+/// Beams whose light on a plane is below this share of the light's mean over the scene are not looked at
+/// closely.
+inline constexpr double kFaintShare = 0.05;
+
+}  // namespace trilens
