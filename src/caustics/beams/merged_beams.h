@@ -21,7 +21,8 @@ struct MergeParams {
 };
 
 /// Whether the quadratic through a triangle's corners and the middles of its sides has all of the samples:
-/// where they fall, on what, and what they carry. The first three are its corners.
+/// where they fall, on what, and what they carry. The first three are its corners; where the middles, or any
+/// others, are not among them all have to be nearly straight. `measure`: of the light's film in the triangle.
 bool is_one_beam(std::span<const MergeSample> samples, double measure, const MergeParams& params);
 
 }  // namespace trilens
