@@ -112,8 +112,8 @@ bool is_one_beam(std::span<const MergeSample> samples, double measure, const Mer
         0.5 * length(cross(values[1].place - values[0].place, values[2].place - values[0].place));
     const bool is_faint = strength * measure < params.faint * area;
     const double room = is_faint ? INFINITY
-                                 : (is_known ? 1 : kNearlyStraight) * params.tolerance *
-                                       std::max(kMostOff, kFaintOff * params.brightest / strength);
+                                 : (is_known ? 1 : kNearlyStraight) * params.tolerance * kFaintOff *
+                                       params.brightest / strength;
     const double light_room =
         (is_known ? kLightOff : kLightBends) * std::max(strength, kFaintest * params.brightest);
     return std::all_of(samples.begin() + 3, samples.end(), [&](const MergeSample& sample) {

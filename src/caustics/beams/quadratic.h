@@ -13,8 +13,8 @@ inline std::array<double, 6> quadratic_weights(const Vec3& w) {
             4 * w.y * w.z,       4 * w.z * w.x,       4 * w.x * w.y};
 }
 
-/// A curved beam may be off by this share of the tolerance, and of a path that carries less than the
-/// brightest by so much more of it.
+/// On a plane a curved beam may be off by the first share of the tolerance, or by the second times how many
+/// times brighter the brightest path is; one that stands for many by the latter.
 inline constexpr double kMostOff = 0.25, kFaintOff = 0.05;
 /// A beam whose sides are straight to so many times that needs no look at its quadratic.
 inline constexpr double kNearlyStraight = 6;
