@@ -75,7 +75,7 @@ void add_hairs(TriangleScene& scene, Random& random, const Ray& ray) {
 }  // namespace
 
 TEST_CASE("the vector engine draws the plain engine's bits where rays pass edges and corners by a hair",
-          "[projector][oracle]") {
+          "[projector][oracle][many]") {
     Random random(30);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;

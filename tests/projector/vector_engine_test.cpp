@@ -37,7 +37,8 @@ TriangleScene sheets(Random& random, const Frame& frame, int count) {
 
 }  // namespace
 
-TEST_CASE("tiles that one triangle covers, with others before, behind and through it", "[projector][law]") {
+TEST_CASE("tiles that one triangle covers, with others before, behind and through it",
+          "[projector][law][many]") {
     Random random(25);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
@@ -169,7 +170,7 @@ TEST_CASE("the vector engine draws the plain engine's bits for hits that doubles
 }
 
 TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind",
-          "[projector][oracle][law]") {
+          "[projector][oracle][law][many]") {
     Random random(21);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
@@ -214,7 +215,7 @@ TEST_CASE("the vector engine draws the plain engine's bits through many facets, 
     }
 }
 
-TEST_CASE("every instruction set draws the same bits", "[projector][law]") {
+TEST_CASE("every instruction set draws the same bits", "[projector][law][many]") {
     const std::vector<std::string> sets = kernel_instruction_sets();
     REQUIRE(!sets.empty());
     CHECK_FALSE(use_instruction_set("none of them"));
@@ -238,7 +239,7 @@ TEST_CASE("every instruction set draws the same bits", "[projector][law]") {
 
 TEST_CASE(
     "no wrong pixel: slivers, needles, coincident and edge-on triangles, far coordinates and all scales",
-    "[projector][law]") {
+    "[projector][law][many]") {
     Random random(24);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;

@@ -169,7 +169,7 @@ TEST_CASE("a ball that may touch the piece, or holds the eye's place, excludes n
 }
 
 TEST_CASE("where the Newton operator shrinks a cell there is one zero of the law at most",
-          "[specular][oracle][law]") {
+          "[specular][oracle][law][many]") {
     check_alone(72, 4000);
 }
 

@@ -145,7 +145,7 @@ TEST_CASE("points side by side are excluded from the cells that exclude each alo
     check(compare(draw, CubeSphere(Vec3(0), 1), oblique, 3000));
 }
 
-TEST_CASE("a zero that is known to be alone on a part of a sphere is alone there", "[specular]") {
+TEST_CASE("a zero that is known to be alone on a part of a sphere is alone there", "[specular][many]") {
     Draw draw(86);
     int alone = 0, alone_and_there = 0, others = 0, at_front = 0;
     for (int round = 0; round < 20000; ++round) {

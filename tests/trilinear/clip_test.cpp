@@ -138,7 +138,7 @@ TEST_CASE("clip: triangles of a fan divide the facet without gap or overlap", "[
 }
 
 TEST_CASE("clip: slices and tessellation approach the exact image as their number grows",
-          "[trilinear][clip][law]") {
+          "[trilinear][clip][law][many]") {
     for (const Curves curves : {Curves::kSlices, Curves::kTessellate}) {
         for (const Clip clip : {Clip::kScreen, Clip::kScene}) {
             double wrong[3] = {0, 0, 0};

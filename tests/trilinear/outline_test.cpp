@@ -225,7 +225,8 @@ TEST_CASE("outlines: even-odd inside is what rays meet in many pairs", "[.long]"
     check_law(2, 20000, 100);
 }
 
-TEST_CASE("outlines: all fifteen configurations, with viewing plane and clipping", "[trilinear][outline]") {
+TEST_CASE("outlines: all fifteen configurations, with viewing plane and clipping",
+          "[trilinear][outline][many]") {
     Random random(3);
     std::map<std::string, int> seen, hits;
     const int wanted = 12;
