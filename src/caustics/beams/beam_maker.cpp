@@ -352,7 +352,10 @@ void BeamMaker::make(const Progress& progress) {
     merge_ = {grid_.tolerance(), grid_.scene_size(), grid_.brightest(), kFaintShare * mean_arriving(grid_)};
     std::vector<Id> all(beams_.histories.size());
     std::iota(all.begin(), all.end(), Id{0});
-    for (Id root = 0; root < grid_.root_count(); ++root) add_node(root, all);
+    for (Id root = 0; root < grid_.root_count(); ++root) {
+        progress.stop_if_cancelled();
+        add_node(root, all);
+    }
     set_spreads(first_end, first_beam);
 }
 
