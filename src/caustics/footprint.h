@@ -10,10 +10,6 @@
 
 namespace trilens {
 
-inline double cross_on_plane(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// Coordinates of a receiver's plane in which its footprint is the square [-1/2, 1/2]^2; of a receiver
 /// without one orthonormal ones about the point.
 struct ReceiverPlane {

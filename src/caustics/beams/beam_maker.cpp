@@ -110,9 +110,7 @@ Id BeamMaker::border_end(const HistoryBorder& border, Id history) {
 
 /// Whether any of it does not only go on to another optic.
 bool BeamMaker::falls(const std::array<Id, 3>& ends) const {
-    return std::any_of(ends.begin(), ends.end(), [&](Id e) {
-        return std::isfinite(beams_.ends[e].object) || !std::isfinite(beams_.ends[e].optic);
-    });
+    return std::any_of(ends.begin(), ends.end(), [&](Id e) { return beams_.ends[e].falls(); });
 }
 
 /// Of a part of the film.
@@ -195,8 +193,7 @@ bool BeamMaker::add_merged(Id history, const NodeCorners& in) {
         }
     }
     add_arriving(history, arriving);
-    const LightPath& like = *samples[0].path;
-    if (!(beam.measure > 0) || (std::isfinite(like.optic) && !std::isfinite(like.object))) return true;
+    if (!(beam.measure > 0) || !samples[0].path->falls()) return true;
     for (std::size_t k = 0; k < 3; ++k) beam.end[k] = end_of(in.corners[k].first, history);
     beams_.beams.push_back(beam);
     return true;
@@ -221,12 +218,12 @@ bool BeamMaker::is_one_beam_between(const std::array<CutEnd, 3>& ends, Id histor
     std::vector<MergeSample> samples{
         {Vec3(1, 0, 0), ends[0].path}, {Vec3(0, 1, 0), ends[1].path}, {Vec3(0, 0, 1), ends[2].path}};
     const Vec2 ab = ends[1].place - ends[0].place, ac = ends[2].place - ends[0].place;
-    const double area = ab.x * ac.y - ab.y * ac.x;
+    const double area = cross_on_plane(ab, ac);
     if (area == 0) return false;
     for (const auto& [corner, of_node] : in.corners) {
         const LightPath* path = histories_.path_at(corner, history);
         const Vec2 way = grid_.place(corner) - ends[0].place;
-        const double b = (way.x * ac.y - way.y * ac.x) / area, c = (ab.x * way.y - ab.y * way.x) / area;
+        const double b = cross_on_plane(way, ac) / area, c = cross_on_plane(ab, way) / area;
         if (path && b >= 0 && c >= 0 && b + c <= 1) samples.push_back({Vec3(1 - b - c, b, c), path});
     }
     return is_one_beam(samples, grid_.window().measure(ends[0].place, ends[1].place, ends[2].place), merge_);
@@ -236,19 +233,16 @@ bool BeamMaker::is_one_beam_between(const std::array<CutEnd, 3>& ends, Id histor
 /// nearly.
 bool BeamMaker::is_cut_straight(const std::array<Vec2, 2>& line, Id history, const NodeCorners& in) const {
     const auto [from, to] = line;
-    const auto beside = [&](const Vec2& place) {
-        return (to.x - from.x) * (place.y - from.y) - (to.y - from.y) * (place.x - from.x);
-    };
     const double slack = kStraightBorder * length(to - from) *
                          length(grid_.place(in.corners[0].first) - grid_.place(in.corners[1].first));
-    bool has_left = false, has_right = false, lacks_left = false, lacks_right = false;
+    bool found[2][2] = {};  // on either side: corners that lack it, and that have it
     for (const auto& [corner, weights] : in.corners) {
-        const double at = beside(grid_.place(corner));
-        if (std::fabs(at) <= slack) continue;
-        const bool has = histories_.path_at(corner, history) != nullptr;
-        (at > 0 ? has ? has_left : lacks_left : has ? has_right : lacks_right) = true;
+        const double beside = cross_on_plane(to - from, grid_.place(corner) - from);
+        if (std::fabs(beside) > slack)
+            found[beside > 0][histories_.path_at(corner, history) != nullptr] = true;
     }
-    return !(has_left && lacks_left) && !(has_right && lacks_right) && !(has_left && has_right);
+    const bool is_mixed = (found[0][0] && found[0][1]) || (found[1][0] && found[1][1]);
+    return !is_mixed && !(found[0][1] && found[1][1]);
 }
 
 /// The beams of a node that the history's border cuts straight, where little goes; false: it takes more.
@@ -317,7 +311,7 @@ void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
         const auto& end = beams_.beams[i].end;
         const BeamEnd &a = beams_.ends[end[0]], &b = beams_.ends[end[1]], &c = beams_.ends[end[2]];
         const Vec2 ab = b.place - a.place, ac = c.place - a.place;
-        const double area = ab.x * ac.y - ab.y * ac.x;
+        const double area = cross_on_plane(ab, ac);
         if (area == 0) continue;
         const double sign = area > 0 ? 1 : -1;  // weighted with the area, which cancels its own division
         const auto slope = [&](const Vec3& to_b, const Vec3& to_c) {

@@ -27,6 +27,8 @@ struct BeamEnd {
     // in their size.
     std::array<double, 3> spread{};
 
+    /// Whether it does not only go on to another optic.
+    bool falls() const { return std::isfinite(object) || !std::isfinite(optic); }
     /// The light's film per area across the ray at distance t.
     double concentration(double t) const {
         return film / std::fabs(spread[0] + t * (spread[1] + t * spread[2]));

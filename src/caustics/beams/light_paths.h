@@ -2,6 +2,7 @@
 // goes.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -38,6 +39,8 @@ struct LightPath : LightHistory {
         std::numeric_limits<double>::infinity();  // way to the first object, before the next optic
 
     const LightHistory& history() const { return *this; }
+    /// Whether it does not only go on to another optic.
+    bool falls() const { return std::isfinite(object) || !std::isfinite(optic); }
 };
 
 /// What surfaces that show a part of what lies behind leave of light.

@@ -91,7 +91,7 @@ bool is_one_beam(std::span<const MergeSample> samples, double measure, const Mer
             return false;
         strength = std::max(strength, strength_of(sample.path->light));
     }
-    if (goes_on(first) && !falls_on_object(first)) return true;
+    if (!first.falls()) return true;
     if (falls_on_object(first) && !is_on_one_plane(samples, params.tolerance)) return false;
     const std::vector<SampleValue> values = fallen(samples, params.size);
     if (values.empty()) return false;
