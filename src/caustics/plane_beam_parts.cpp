@@ -116,7 +116,7 @@ struct PlaneBeams::PartsMaker {
     /// Whether the hull lies beside the face by more than `room`.
     template <std::size_t kCount>
     bool is_beside(const std::array<Vec2, kCount>& at, double room) const {
-        Box2 box;
+        PlaneBox box;
         for (const Vec2& one : at) box.include(one);
         return !box.meets({-half - room, half + room});
     }

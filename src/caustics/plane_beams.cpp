@@ -4,14 +4,12 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <numeric>
 
 #include "base/util/parallel.h"
 
 namespace trilens {
 namespace {
 
-constexpr std::uint32_t kPerLeaf = 4;
 ReceiverPlane plane_of(const ReceiverFace& face, const Vec3& normal) {
     Receiver receiver;
     receiver.point = face.center;
@@ -54,21 +52,11 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
         curved_.insert(curved_.end(), one.curved.begin(), one.curved.end());
         flat_.insert(flat_.end(), one.flat.begin(), one.flat.end());
     }
-    order_.resize(curved_.size() + flat_.size());
-    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-    bounds_.reserve(order_.size());
-    for (const std::uint32_t entry : order_) bounds_.push_back(bounds_of(entry));
-    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
-    std::vector<Bounds> in_order;
-    in_order.reserve(order_.size());
-    for (const std::uint32_t entry : order_) in_order.push_back(bounds_[entry]);
-    bounds_ = std::move(in_order);
-}
-
-PlaneBeams::Box2 PlaneBeams::hull_box(const std::array<Vec2, 6>& at) {
-    Box2 box;
-    for (const Vec2& point : bezier_points(at)) box.include(point);
-    return box;
+    std::vector<PlaneBounds> bounds;
+    bounds.reserve(curved_.size() + flat_.size());
+    for (const Curved& one : curved_) bounds.push_back(PlaneBounds::of(bezier_points(one.curve.at)));
+    for (const Flat& one : flat_) bounds.push_back(PlaneBounds::of(one.fallen.at));
+    tree_ = PlaneTree(std::move(bounds), {-half, half});
 }
 
 std::array<Vec2, 6> PlaneBeams::fallen_on(const Curved& one, const Map& map) {
@@ -78,31 +66,9 @@ std::array<Vec2, 6> PlaneBeams::fallen_on(const Curved& one, const Map& map) {
 }
 
 bool PlaneBeams::is_inside(const std::array<Vec2, 6>& at) {
-    const Box2 box = hull_box(at);
+    PlaneBox box;
+    for (const Vec2& point : bezier_points(at)) box.include(point);
     return std::max({-box.low.x, -box.low.y, box.high.x, box.high.y}) <= 0.5;
-}
-
-/// Its strips are those of its first three corners' sides' directions, which all of it lies in: they part it
-/// from what is beside (separating axes).
-template <std::size_t kCount>
-PlaneBeams::Bounds PlaneBeams::bounds_of(const std::array<Vec2, kCount>& hull) {
-    Bounds bounds;
-    for (const Vec2& point : hull) bounds.box.include(point);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2 side = hull[(k + 1) % 3] - hull[k];
-        const Vec2 normal(-side.y, side.x);
-        Strip& strip = bounds.strips[k] = {normal, INFINITY, -INFINITY};
-        for (const Vec2& point : hull) {
-            strip.low = std::min(strip.low, dot(normal, point));
-            strip.high = std::max(strip.high, dot(normal, point));
-        }
-    }
-    return bounds;
-}
-
-PlaneBeams::Bounds PlaneBeams::bounds_of(std::uint32_t entry) const {
-    if (entry < curved_.size()) return bounds_of(bezier_points(curved_[entry].curve.at));
-    return bounds_of(flat_[entry - curved_.size()].fallen.at);
 }
 
 /// All that comes to the footprint, times its part of the film.
@@ -134,44 +100,9 @@ PlaneBeams::Map PlaneBeams::map_to(const ReceiverPlane& footprint) const {
     return map;
 }
 
-PlaneBeams::Parallelogram PlaneBeams::parallelogram_of(const ReceiverPlane& footprint, const Map& map) {
+PlaneParallelogram PlaneBeams::parallelogram_of(const ReceiverPlane& footprint, const Map& map) {
     const Mat2 back = glm::inverse(map.turn);
     return {-(back * map.origin), footprint.has_footprint ? 0.5 * back : Mat2(0)};
-}
-
-PlaneBeams::Box2 PlaneBeams::box_of(const Parallelogram& footprint) {
-    const Vec2 half = glm::abs(footprint.half[0]) + glm::abs(footprint.half[1]);
-    return {footprint.middle - half, footprint.middle + half};
-}
-
-void PlaneBeams::build(std::uint32_t first, std::uint32_t end) {
-    const auto at = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Node node;
-    Box2 middles;
-    const auto middle_of = [&](std::uint32_t entry) {
-        return bounds_[entry].box.low + bounds_[entry].box.high;
-    };
-    for (std::uint32_t i = first; i < end; ++i) {
-        node.box.include(bounds_[order_[i]].box.low), node.box.include(bounds_[order_[i]].box.high);
-        middles.include(middle_of(order_[i]));
-    }
-    if (end - first <= kPerLeaf) {
-        node.first = first, node.end = end;
-    } else {
-        const Vec2 wide = middles.high - middles.low;
-        const int k = wide.x > wide.y ? 0 : 1;
-        const std::uint32_t middle = first + (end - first) / 2;
-        std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + end,
-                         [&](std::uint32_t a, std::uint32_t b) {
-                             const double of_a = middle_of(a)[k], of_b = middle_of(b)[k];
-                             return of_a != of_b ? of_a < of_b : a < b;
-                         });
-        build(first, middle);
-        build(middle, end);
-    }
-    node.skip = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[at] = node;
 }
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-// Bounding-volume hierarchy, in two dimensions, over where a light's beams fall on one plane.
+// A light's beams where they fall on one plane.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "caustics/beam_tree.h"
+#include "caustics/plane_tree.h"
 #include "caustics/receiver_faces.h"
 #include "caustics/refined_beams.h"
 
@@ -56,22 +57,6 @@ class PlaneBeams {
                        const Use& use) const;
 
   private:
-    /// Lines of one direction in the plane: those from `low` to `high` along its normal.
-    struct Strip {
-        Vec2 normal{0};
-        double low = 0, high = 0;
-    };
-    /// A footprint in the plane's coordinates.
-    struct Parallelogram {
-        Vec2 middle{0};
-        Mat2 half{1};  // of its sides
-        bool is_beside(const Strip& strip) const {
-            const double at = dot(strip.normal, middle);
-            const double reach =
-                std::fabs(dot(strip.normal, half[0])) + std::fabs(dot(strip.normal, half[1]));
-            return at - reach > strip.high || at + reach < strip.low;
-        }
-    };
     struct Curved {
         BeamCorners corners;
         FallenCurve curve;
@@ -86,29 +71,6 @@ class PlaneBeams {
         FallenBeam fallen;
         Id index = kNone;
         Way way = Way::kUnknown;
-    };
-    struct Box2 {
-        Vec2 low{INFINITY}, high{-INFINITY};
-        void include(const Vec2& at) { low = glm::min(low, at), high = glm::max(high, at); }
-        bool meets(const Box2& other) const {
-            return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y &&
-                   other.low.y <= high.y;
-        }
-    };
-    struct Node {
-        Box2 box;
-        std::uint32_t skip = 0;            // the node after this one's subtree
-        std::uint32_t first = 0, end = 0;  // a leaf's entries in order_
-    };
-    /// Around where an entry falls.
-    struct Bounds {
-        Box2 box;
-        std::array<Strip, 3> strips;
-        bool meets(const Box2& asked, const Parallelogram& footprint) const {
-            return box.meets(asked) && std::none_of(strips.begin(), strips.end(), [&](const Strip& strip) {
-                       return footprint.is_beside(strip);
-                   });
-        }
     };
     /// What becomes of one beam, and the ends of that which are no beam's.
     struct Parts {
@@ -131,53 +93,28 @@ class PlaneBeams {
         Mat2 turn{1};
         Vec2 operator()(const Vec2& at) const { return origin + turn * at; }
     };
-    template <typename Use>
-    void for_each_near(const Parallelogram& asked, const Use& use) const;
     static std::array<Vec2, 6> fallen_on(const Curved& one, const Map& map);
     // Of where a curved beam falls, in a footprint's coordinates.
     static bool is_inside(const std::array<Vec2, 6>& at);
-    template <std::size_t kCount>
-    static Bounds bounds_of(const std::array<Vec2, kCount>& hull);
     static Vec3 light_of(const Curved& one, const std::array<Vec2, 6>& at);
     template <typename Use>
     static void use_parts(const Curved& one, const std::array<Vec2, 6>& at, const Use& use);
     template <typename Use>
     static void use_flat(const Flat& one, const Map& map, double half, const Use& use);
-    static Box2 hull_box(const std::array<Vec2, 6>& at);
     Map map_to(const ReceiverPlane& footprint) const;
-    static Parallelogram parallelogram_of(const ReceiverPlane& footprint, const Map& map);
-    static Box2 box_of(const Parallelogram& footprint);
-    Bounds bounds_of(std::uint32_t entry) const;
-    void build(std::uint32_t first, std::uint32_t end);
+    static PlaneParallelogram parallelogram_of(const ReceiverPlane& footprint, const Map& map);
 
     ReceiverPlane plane_;
     std::vector<std::unique_ptr<const BeamEnd>> ends_;  // of parts, that are no beams'
     std::vector<Curved> curved_;
     std::vector<Flat> flat_;
-    std::vector<Node> nodes_;           // depth first
-    std::vector<std::uint32_t> order_;  // of the curved, and after them of the flat
-    std::vector<Bounds> bounds_;        // of all: until they are in a tree by number, then in its order
+    PlaneTree tree_;  // over the curved, and after them the flat
 };
-
-template <typename Use>
-void PlaneBeams::for_each_near(const Parallelogram& asked, const Use& use) const {
-    const Box2 around = box_of(asked);
-    for (std::size_t n = 0; n < nodes_.size();) {
-        const Node& node = nodes_[n];
-        if (!node.box.meets(around)) {
-            n = node.skip;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.end; ++i)
-            if (bounds_[i].meets(around, asked)) use(order_[i]);
-        ++n;
-    }
-}
 
 template <typename Use>
 void PlaneBeams::for_each_piece(const ReceiverPlane& point, const Use& use) const {
     const Map map = map_to(point);
-    for_each_near(parallelogram_of(point, map), [&](std::uint32_t entry) {
+    tree_.for_each_near(parallelogram_of(point, map), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) return use_flat(flat_[entry - curved_.size()], map, 0, use);
         const Curved& one = curved_[entry];
         CurvedBeam{one.corners, {}}.for_each_piece({fallen_on(one, map), one.curve.light}, 0, one.sides,
@@ -191,7 +128,7 @@ template <typename UseLight, typename Use>
 void PlaneBeams::for_each_part(const ReceiverPlane& footprint, bool sums, const UseLight& use_light,
                                const Use& use) const {
     const Map map = map_to(footprint);
-    for_each_near(parallelogram_of(footprint, map), [&](std::uint32_t entry) {
+    tree_.for_each_near(parallelogram_of(footprint, map), [&](std::uint32_t entry) {
         if (entry >= curved_.size()) {
             use_flat(flat_[entry - curved_.size()], map, 0.5,
                      [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
