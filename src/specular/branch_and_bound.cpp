@@ -186,6 +186,7 @@ void BranchAndBound::settle_at(const SurfaceParameter& zero, const AskCell& ask)
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     TreeNode* alone = nullptr;
     for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
+        if (cell->view.is_behind) return;
         const CellWord word = ask(*cell);
         if (!alone && word == CellWord::kNarrow) alone = cell;
         if (word != CellWord::kUnknown) continue;

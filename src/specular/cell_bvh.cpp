@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/raymesh/face_neighbours.h"
 #include "base/util/parallel.h"
 
 namespace trilens {
@@ -57,9 +58,10 @@ SurfaceCell::~SurfaceCell() {
     delete halves_.load();
 }
 
-CellBvh::CellBvh(const Surface& surface)
+CellBvh::CellBvh(const Surface& surface, Occluder first_hit)
     : surface_(surface), bounder_(surface.make_bounder()), faces_(bounder_ ? surface.face_count() : 0) {
     if (faces_.empty()) return;
+    if (first_hit && is_closed(surface)) occluder_ = std::move(first_hit);
     parallel_for(faces_.size(), 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t f = first; f < last; ++f) {
             faces_[f].box.face = static_cast<Id>(f);

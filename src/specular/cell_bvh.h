@@ -4,7 +4,9 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -59,11 +61,14 @@ bool is_outside(FaceDomain domain, const CellBox& box);
 /// The halves of a cell, across its side that is longer in the world.
 std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& middle);
 
+/// The first hit of a ray with a surface with t > t_min, t in units of its direction.
+using Occluder = std::function<std::optional<SurfaceHit>(const Ray& ray, double t_min)>;
+
 /// The tree: groups over the faces, and the faces' cells, halved as far as any search went. What is asked for
 /// has the same bits whoever asked before. Thread-safe to read. The surface must live longer.
 class CellBvh {
   public:
-    explicit CellBvh(const Surface& surface);
+    explicit CellBvh(const Surface& surface, Occluder first_hit = {});
 
     /// Null where the surface has no bounds: then there are no cells.
     const SurfaceBounder* bounder() const { return bounder_.get(); }
@@ -72,6 +77,8 @@ class CellBvh {
     /// The halves of one of the tree's cells, of which one may have nothing of the face (is_outside); null
     /// where there are so many already that no more are kept.
     const CellHalves* halves(const SurfaceCell& cell) const;
+    /// By which the surface hides parts of itself; empty where it is not closed, or none was given.
+    const Occluder& occluder() const { return occluder_; }
 
   private:
     std::size_t add_groups(std::span<std::size_t> faces);
@@ -80,6 +87,7 @@ class CellBvh {
     std::unique_ptr<const SurfaceBounder> bounder_;
     std::vector<SurfaceCell> faces_;
     std::vector<CellGroup> groups_;
+    Occluder occluder_;
     mutable std::atomic<std::size_t> halved_ = 0;
 };
 

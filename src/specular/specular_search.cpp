@@ -79,8 +79,8 @@ std::vector<SpecularSearch> SpecularSearcher::Impl::find_on_sphere(const SphereS
     return found;
 }
 
-SpecularSearcher::SpecularSearcher(const Surface& surface)
-    : impl_(new Impl{surface, CellBvh(surface), {}, {}}) {}
+SpecularSearcher::SpecularSearcher(const Surface& surface, Occluder first_hit)
+    : impl_(new Impl{surface, CellBvh(surface, std::move(first_hit)), {}, {}}) {}
 
 SpecularSearcher::~SpecularSearcher() = default;
 

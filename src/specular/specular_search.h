@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/raymesh/surface.h"
+#include "specular/cell_bvh.h"
 #include "specular/specular_point.h"
 
 namespace trilens {
@@ -41,7 +42,9 @@ struct SpecularSearch {
 /// list is never complete.
 class SpecularSearcher {
   public:
-    explicit SpecularSearcher(const Surface& surface);
+    /// With `first_hit`, of rays with the surface, what a closed surface surely hides from the query's eye is
+    /// not searched: images there are not listed, and leave no list incomplete.
+    explicit SpecularSearcher(const Surface& surface, Occluder first_hit = {});
     ~SpecularSearcher();
 
     /// The images that the query asks for, with the query's indices for both sides of the surface.

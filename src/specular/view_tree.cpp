@@ -1,9 +1,19 @@
 #include "specular/view_tree.h"
 
 namespace trilens {
+namespace {
+
+/// Parts of cells whose normals turn by less than this are not asked whether they are hidden.
+constexpr double kLeastTurn = 0.1;
+
+}  // namespace
 
 ViewTree::ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query)
-    : surface_(surface), cells_(cells), query_(query) {
+    : surface_(surface),
+      cells_(cells),
+      query_(query),
+      occlusion_(surface, cells),
+      may_hide_(cells.occluder() && !query.camera.parallel) {
     begin_anew();
 }
 
@@ -28,26 +38,39 @@ TreeNode* ViewTree::add_group(std::size_t index) {
     return node;
 }
 
-TreeNode* ViewTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored) {
+/// Whether the surface hides a cell of which one side is known to be turned to the eye. What is seen in the
+/// middle is taken to be seen all over.
+void ViewTree::look_at(TreeNode& cell) const {
+    if (!cell.may_hide || cell.view.is_behind || !cell.view.knows_side) return;
+    const InSight sight = occlusion_.look(query_.camera.eye, cell.box, *cell.bounds);
+    cell.view.is_behind = sight == InSight::kHidden;
+    cell.may_hide = sight == InSight::kUnknown && cell.place.normal_radius >= kLeastTurn;
+}
+
+TreeNode* ViewTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored,
+                             bool may_hide) {
     TreeNode* node = add(place_of(bounds));
     node->box = box;
     node->bounds = &bounds;
     node->stored = stored;
+    node->may_hide = may_hide;
+    look_at(*node);
     return node;
 }
 
-TreeNode* ViewTree::add_stored(const SurfaceCell& cell) {
+TreeNode* ViewTree::add_stored(const SurfaceCell& cell, bool may_hide) {
     if (is_outside(surface_.domain(cell.box.face), cell.box)) return nullptr;
-    return add_cell(cell.box, cell.bounds, &cell);
+    return add_cell(cell.box, cell.bounds, &cell, may_hide);
 }
 
-TreeNode* ViewTree::add_fresh(const CellBox& box) {
+TreeNode* ViewTree::add_fresh(const CellBox& box, bool may_hide) {
     if (is_outside(surface_.domain(box.face), box)) return nullptr;
-    return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), nullptr);
+    return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), nullptr,
+                    may_hide);
 }
 
 TreeNode& ViewTree::face(Id face) {
-    if (!faces_[face]) faces_[face] = add_stored(cells_.faces()[face]);
+    if (!faces_[face]) faces_[face] = add_stored(cells_.faces()[face], may_hide_);
     return *faces_[face];
 }
 
@@ -64,11 +87,12 @@ void ViewTree::halve(TreeNode& node) {
         node.halves[0] = group.leaf ? &face(static_cast<Id>(group.first)) : add_group(group.first);
         node.halves[1] = group.leaf ? nullptr : add_group(group.second);
     } else if (const CellHalves* halves = node.stored ? cells_.halves(*node.stored) : nullptr) {
-        for (std::size_t half = 0; half < 2; ++half) node.halves[half] = add_stored((*halves)[half]);
+        for (std::size_t half = 0; half < 2; ++half)
+            node.halves[half] = add_stored((*halves)[half], node.may_hide);
     } else {
         const auto [first, second] = halves_of(node.box, node.bounds->middle);
-        node.halves[0] = add_fresh(first);
-        node.halves[1] = add_fresh(second);
+        node.halves[0] = add_fresh(first, node.may_hide);
+        node.halves[1] = add_fresh(second, node.may_hide);
     }
 }
 

@@ -9,6 +9,7 @@
 
 #include "specular/cell_bounds.h"
 #include "specular/cell_bvh.h"
+#include "specular/self_occlusion.h"
 #include "specular/simd_bounds.h"
 
 namespace trilens {
@@ -37,7 +38,8 @@ class NodePool {
 /// A group of faces or a cell, with what does not depend on the point.
 struct TreeNode {
     PlaceBounds place;
-    EyeView view;
+    EyeView view;                              // of a cell that the surface hides: behind the camera
+    bool may_hide = false;                     // of a cell: whether cells within may be hidden
     CellBox box;                               // of a cell
     const SurfaceBounds* bounds = nullptr;     // of a cell; null for a group
     std::size_t group = 0;                     // of a group: its index
@@ -53,7 +55,8 @@ struct TreeNode {
 /// Grows on request: one thread each. Surface cells must live longer.
 class ViewTree {
   public:
-    /// For all queries that differ from this in the point alone.
+    /// For all queries that differ from this in the point alone. Cells that the surface itself hides from
+    /// the eye are taken for such behind the camera, where `cells` have an occluder.
     ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query);
 
     /// Forgets all nodes: none that it gave is valid after.
@@ -71,13 +74,17 @@ class ViewTree {
   private:
     TreeNode* add(const PlaceBounds& place);
     TreeNode* add_group(std::size_t index);
-    TreeNode* add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored);
-    TreeNode* add_stored(const SurfaceCell& cell);
-    TreeNode* add_fresh(const CellBox& box);
+    TreeNode* add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored,
+                       bool may_hide);
+    TreeNode* add_stored(const SurfaceCell& cell, bool may_hide);
+    TreeNode* add_fresh(const CellBox& box, bool may_hide);
+    void look_at(TreeNode& cell) const;
 
     const Surface& surface_;
     const CellBvh& cells_;
     const SpecularQuery query_;
+    const SelfOcclusion occlusion_;
+    const bool may_hide_;
     NodePool<TreeNode> nodes_;
     NodePool<SurfaceBounds> fresh_;
     NodePool<CellTerms> terms_;

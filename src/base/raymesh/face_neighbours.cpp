@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <unordered_map>
 
 namespace trilens {
 namespace {
@@ -62,6 +63,23 @@ int leaves_by(FaceDomain domain, const Vec2& step, Vec2& uv) {
 }
 
 }  // namespace
+
+bool is_closed(const Surface& surface) {
+    std::unordered_map<Id, std::array<int, 2>> edges;  // sides along the first half of each, and the second
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        const FaceBorder border = surface.border(face);
+        for (int k = 0; k < side_count(surface.domain(face)); ++k) {
+            const FaceSide& side = border.sides[static_cast<std::size_t>(k)];
+            if (side.edge == kNone) return false;
+            std::array<int, 2>& halves = edges[side.edge];
+            halves[0] += side.part != FaceSide::Part::kSecondHalf;
+            halves[1] += side.part != FaceSide::Part::kFirstHalf;
+        }
+    }
+    return !edges.empty() && std::all_of(edges.begin(), edges.end(), [](const auto& edge) {
+        return edge.second == std::array<int, 2>{2, 2};
+    });
+}
 
 FaceNeighbours::FaceNeighbours(const Surface& surface) : surface_(surface) {
     for (Id face = 0; face < surface.face_count(); ++face) {

@@ -8,6 +8,9 @@
 
 namespace trilens {
 
+/// Whether every side of every face is one of two along its edge, so that the surface bounds a body.
+bool is_closed(const Surface& surface);
+
 /// Which faces of a surface share edges. Thread-safe to read; the surface must live longer.
 class FaceNeighbours {
   public:

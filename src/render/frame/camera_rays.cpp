@@ -35,7 +35,8 @@ bool holds(const Box& box, const Vec3& p) {
     return true;
 }
 
-/// The point that all rays of the camera start in; none where they do not.
+}  // namespace
+
 std::optional<Vec3> eye_of(const CameraRays& camera) {
     if (camera.linear) {
         if (camera.linear->parallel || camera.near_depth > 0) return std::nullopt;
@@ -46,6 +47,8 @@ std::optional<Vec3> eye_of(const CameraRays& camera) {
         eye ? camera.model->ray(0.5 * Vec2(camera.film.width, camera.film.height)) : std::nullopt;
     return middle && middle->origin == *eye ? eye : std::nullopt;
 }
+
+namespace {
 
 Id active(const World& world, const Media& media) {
     return media.active([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });

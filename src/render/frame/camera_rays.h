@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,6 +56,9 @@ std::shared_ptr<const CameraModel> make_ray_mesh_model(const RayMesh& mesh, cons
 
 /// Whether a model is one of those.
 bool is_ray_mesh_model(const CameraModel& model);
+
+/// The point that all rays of the camera start in; none where they do not.
+std::optional<Vec3> eye_of(const CameraRays& camera);
 
 // What a camera stands in: the bodies of glass around its eye, or around where each of its rays starts.
 

@@ -70,14 +70,23 @@ bool PointProjector::may_have_several() const {
     return !optics.empty() && !(optics.size() == 1 && optics[0].mirror && optics[0].convex);
 }
 
+/// Rays that tell what of an optic lies behind itself, where images there are left out.
+Occluder PointProjector::what_hides(std::size_t index) const {
+    if (!request_.refine || !eye_of(camera_)) return {};
+    return [this, index](const Ray& ray, double t_min) {
+        return limit_tracer(world_, index).first_hit(ray, t_min);
+    };
+}
+
 void PointProjector::add_optic(std::size_t index) {
     const OpticFacets& facets = *frame_.optics[index].facets;
     facets.tracer();
     may_have_several_ = may_have_several();
     const bool asks_one = !request_.path.asks() || request_.path.size() == 1;
     if (searches_surfaces()) {
-        searcher_.push_back(asks_one ? std::make_unique<SpecularSearcher>(*world_.optics[index].surface)
-                                     : nullptr);
+        searcher_.push_back(
+            asks_one ? std::make_unique<SpecularSearcher>(*world_.optics[index].surface, what_hides(index))
+                     : nullptr);
         limit_tracer(world_, index);  // by the bounds that the searcher holds
         facets_at_.emplace_back(facets.grid(), world_.optics[index].surface->face_count());
     }

@@ -33,6 +33,7 @@ class PointProjector {
                  std::span<PointProjection> result) const;
 
   private:
+    Occluder what_hides(std::size_t index) const;
     void add_optic(std::size_t index);
     void add_direct(const ProjectedPoint& point, PointProjection& result) const;
     void add_camera_mesh(const Vec3& point, PointProjection& result) const;
