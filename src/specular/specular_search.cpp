@@ -25,8 +25,11 @@ struct SpecularSearcher::Impl {
 
     std::vector<SpecularSearch> find_in_cells(const SpecularQuery& query, std::span<const Vec3> points,
                                               const SearchLimits& limits);
-    std::vector<SpecularSearch> find_on_sphere(const SphereSearch& sphere, const SpecularQuery& query,
-                                               std::span<const Vec3> points, const SearchLimits& limits);
+    std::vector<SpecularSearch> find_on_sphere(const SphereSearch& sphere, std::span<const Vec3> points,
+                                               const SearchLimits& limits);
+    SphereSearch sphere_search(const SpecularQuery& query, const SearchLimits& limits) const {
+        return {surface, query, limits, static_cast<bool>(cells.occluder())};
+    }
     std::unique_ptr<BatchSearch> take(const SpecularQuery& query, const SearchLimits& limits);
     void give_back(std::unique_ptr<BatchSearch> batch);
 };
@@ -63,7 +66,6 @@ std::vector<SpecularSearch> SpecularSearcher::Impl::find_in_cells(const Specular
 
 /// Of points that the sphere's own search says nothing of through the cells.
 std::vector<SpecularSearch> SpecularSearcher::Impl::find_on_sphere(const SphereSearch& sphere,
-                                                                   const SpecularQuery& query,
                                                                    std::span<const Vec3> points,
                                                                    const SearchLimits& limits) {
     std::vector<std::optional<SpecularSearch>> known = sphere.find(points);
@@ -71,7 +73,7 @@ std::vector<SpecularSearch> SpecularSearcher::Impl::find_on_sphere(const SphereS
     for (std::size_t p = 0; p < points.size(); ++p)
         if (!known[p]) open.push_back(points[p]);
     std::vector<SpecularSearch> rest;
-    if (!open.empty()) rest = find_in_cells(query, open, limits);
+    if (!open.empty()) rest = find_in_cells(sphere.query(), open, limits);
     std::vector<SpecularSearch> found;
     found.reserve(points.size());
     for (std::size_t p = 0, next = 0; p < points.size(); ++p)
@@ -111,10 +113,14 @@ SpecularSearch together(SpecularSearch search, const SpecularSearch& other) {
 
 }  // namespace
 
-SpecularSearch SpecularSearcher::find(const SpecularQuery& query, const SearchLimits& limits) const {
-    check(query, limits);
-    if (const SphereSearch sphere(impl_->surface, query, limits); impl_->cells.bounder() && sphere.applies())
-        if (auto found = std::move(sphere.find({&query.point, 1}).front())) return std::move(*found);
+SpecularSearch SpecularSearcher::find(const SpecularQuery& asked, const SearchLimits& limits) const {
+    check(asked, limits);
+    SpecularQuery query = asked;
+    if (const SphereSearch sphere = impl_->sphere_search(asked, limits);
+        impl_->cells.bounder() && sphere.applies()) {
+        if (auto found = std::move(sphere.find({&asked.point, 1}).front())) return std::move(*found);
+        query = sphere.query();
+    }
     if (impl_->cells.bounder() && query.own_normals) {
         ViewTree tree(impl_->surface, impl_->cells, query);
         return BranchAndBound(impl_->surface, *impl_->cells.bounder(), tree, limits).run(query);
@@ -133,8 +139,9 @@ std::vector<SpecularSearch> SpecularSearcher::find_each(const SpecularQuery& que
                                                         std::span<const Vec3> points,
                                                         const SearchLimits& limits) const {
     check(query, limits);
-    if (const SphereSearch sphere(impl_->surface, query, limits); impl_->cells.bounder() && sphere.applies())
-        return impl_->find_on_sphere(sphere, query, points, limits);
+    if (const SphereSearch sphere = impl_->sphere_search(query, limits);
+        impl_->cells.bounder() && sphere.applies())
+        return impl_->find_on_sphere(sphere, points, limits);
     if (impl_->cells.bounder() && query.own_normals) return impl_->find_in_cells(query, points, limits);
     std::vector<SpecularSearch> found;
     SpecularQuery one = query;

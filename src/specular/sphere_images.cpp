@@ -33,16 +33,24 @@ HWY_INLINE Vector unit(const Vector& v) {
     return over(v, size_of(v));
 }
 
+/// The way between both: how near to the centre it comes, between its ends.
+struct Way {
+    Number length, nearest;
+};
+
+HWY_INLINE Way way_of(const EyeAndPoint& pair) {
+    const Vector way = minus(pair.point, pair.eye);
+    const Number along = hn::Div(hn::Neg(dot(pair.eye, way)), dot(way, way));
+    const Number inside = hn::Min(hn::Max(along, number(0)), number(1));
+    return {size_of(way), size_of(plus(pair.eye, times(inside, way)))};
+}
+
 struct Ways {
     Truth clear, through;
 };
 
 HWY_INLINE Ways ways_of(const EyeAndPoint& pair) {
-    const Vector way = minus(pair.point, pair.eye);
-    const Number length = size_of(way);
-    const Number along = hn::Div(hn::Neg(dot(pair.eye, way)), dot(way, way));
-    const Number inside = hn::Min(hn::Max(along, number(0)), number(1));
-    const Number nearest = size_of(plus(pair.eye, times(inside, way)));
+    const auto [length, nearest] = way_of(pair);
     const Number margin = hn::Add(number(kClearOfSphere), hn::Mul(number(kClearOfWay), length));
     const Number eye = size_of(pair.eye), point = size_of(pair.point), outside = number(1 + kClearOfSphere);
     const Truth apart =
@@ -140,6 +148,50 @@ void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLane
     }
 }
 
+/// For images in front alone way and point may come nearer: there Newton's method has to converge, and no
+/// more.
+constexpr double kFrontClearance = 2e-5;
+constexpr int kFrontSteps = 5;
+
+/// One step of Newton's method along the circle to where the tangents of half the angles to the normal are
+/// opposite: on the arc seen from outside by both each grows with a slope of half or more, also where light
+/// grazes.
+HWY_INLINE Vector nearer_in_front(const EyeAndPoint& pair, const Vector& across, const Vector& normal) {
+    const Vector along = cross(across, normal);
+    Number sum = number(0), slope = number(0);
+    for (const Vector& from : {pair.eye, pair.point}) {
+        const Vector way = minus(normal, from);
+        const Number by_distance = hn::Div(number(1), size_of(way));
+        const Number cosine = hn::Mul(by_distance, dot(way, normal));
+        const Number tangent = hn::Div(hn::Mul(by_distance, dot(way, along)), hn::Sub(number(1), cosine));
+        const Number turn = hn::Sub(number(1), hn::Mul(cosine, by_distance));
+        sum = hn::Add(sum, tangent);
+        slope = hn::Add(slope, hn::Mul(turn, hn::Add(number(1), hn::Mul(tangent, tangent))));
+    }
+    return unit(minus(normal, times(hn::Div(hn::Add(sum, sum), slope), along)));
+}
+
+void find_front_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                           FrontZeros& result) {
+    const Number by_radius = number(1 / sphere.radius);
+    const Vector center = vector(sphere.center);
+    const Vector from_center = times(by_radius, minus(vector(eye), center));
+    result.one = result.none = 0;
+    for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
+        const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
+        const EyeAndPoint pair{from_center, times(by_radius, minus(point, center))};
+        const auto [length, nearest] = way_of(pair);
+        const Number margin = hn::Mul(number(kFrontClearance), hn::Add(number(1), length));
+        result.one |= bits_of(hn::Gt(nearest, hn::Add(number(1), margin))) << first;
+        result.none |= bits_of(hn::Lt(nearest, hn::Sub(number(1), margin))) << first;
+        const Edges of_eye = edges_of(pair.eye, pair.point), of_point = edges_of(pair.point, pair.eye);
+        const Vector across = unit(cross(pair.eye, pair.point));
+        Vector normal = near_start(pair, of_eye, of_point);
+        for (int step = 0; step < kFrontSteps; ++step) normal = nearer_in_front(pair, across, normal);
+        store(normal, result.at, first);
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace trilens::specular
 HWY_AFTER_NAMESPACE();
@@ -148,11 +200,18 @@ HWY_AFTER_NAMESPACE();
 namespace trilens {
 namespace specular {
 HWY_EXPORT(find_zeros_here);
+HWY_EXPORT(find_front_zeros_here);
 }  // namespace specular
 
 void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros) {
     using namespace specular;
     HWY_DYNAMIC_DISPATCH(find_zeros_here)(sphere, eye, points, zeros);
+}
+
+void find_front_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                      FrontZeros& zeros) {
+    using namespace specular;
+    HWY_DYNAMIC_DISPATCH(find_front_zeros_here)(sphere, eye, points, zeros);
 }
 
 }  // namespace trilens

@@ -35,4 +35,17 @@ struct SphereZeros {
 /// are two minima on it, none on an arc seen from outside by both, and a maximum on each of two arcs.
 void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros);
 
+/// Of lanes for which it is known how often an eye outside sees them reflected in the sphere's front.
+struct FrontZeros {
+    LaneBits one = 0, none = 0;
+    PointLanes at;  // unit normals there, roughly
+};
+
+/// A place is seen from its front by eye and point where its tangent plane parts them from the sphere: there
+/// are such where the way between them passes the sphere, one arc of the circle above, and none where it
+/// meets it. On that arc the path has one minimum, whose second derivative is no less than either c. Said
+/// where the way is clear of the edge.
+void find_front_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                      FrontZeros& zeros);
+
 }  // namespace trilens

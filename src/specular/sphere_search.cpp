@@ -11,6 +11,8 @@ namespace {
 
 /// h . normal of zeros at which eye and point are on the same side is no less; where they are not it is zero.
 constexpr double kClearOfRim = 0.01;
+/// The same of the one in front where no other is asked for, and of the eye outside, in radii.
+constexpr double kClearInFront = 1e-3;
 /// What is left of the law at a zero: some hundred rounding errors of directions, and those of coordinates.
 constexpr double kSphereResidual = 2e-13, kSphereRounding = 64;
 constexpr int kLastSphereSteps = 2;  // from seven digits to more than there are
@@ -21,7 +23,8 @@ Vec3 in_single(const Vec3& v) {
 
 }  // namespace
 
-SphereSearch::SphereSearch(const Surface& surface, const SpecularQuery& query, const SearchLimits& limits)
+SphereSearch::SphereSearch(const Surface& surface, const SpecularQuery& query, const SearchLimits& limits,
+                           bool hides)
     : surface_(surface), query_(query) {
     const double curvature = surface.sphere_curvature();
     applies_ = curvature > 0 && query.event == SpecularEvent::kReflect && query.own_normals &&
@@ -32,6 +35,9 @@ SphereSearch::SphereSearch(const Surface& surface, const SpecularQuery& query, c
     const SurfacePoint at = surface.eval(0, Vec2(0.5));
     sphere_.radius = 1 / curvature;
     sphere_.center = at.position - sphere_.radius * at.normal;
+    const bool is_outside = length(query.camera.eye - sphere_.center) > (1 + kClearInFront) * sphere_.radius;
+    if (is_outside && hides && query.viewed == ViewedSide::kEither) query_.viewed = ViewedSide::kFront;
+    asks_front_ = is_outside && query_.viewed == ViewedSide::kFront;
 }
 
 /// Newton's method on the sphere, whose Hessian is diagonal in the plane of eye, point and centre and across
@@ -86,6 +92,18 @@ std::optional<SphereSearch::Zero> SphereSearch::settle(const Vec3& rough, const 
     return zero;
 }
 
+std::optional<SpecularSearch> SphereSearch::settle_front(const FrontZeros& zeros, std::size_t lane,
+                                                         const Vec3& point) const {
+    SpecularSearch search;
+    search.complete = true;
+    if (zeros.none >> lane & 1) return search;
+    if (!(zeros.one >> lane & 1)) return std::nullopt;
+    const std::optional<Zero> zero = settle(zeros.at.at(lane), point);
+    if (!zero || !(zero->along < -kClearInFront)) return std::nullopt;
+    if (zero->is_image) search.images.push_back(zero->point);
+    return search;
+}
+
 std::optional<SpecularSearch> SphereSearch::settle_both(const SphereZeros& zeros, std::size_t lane,
                                                         const Vec3& point) const {
     const bool lit = zeros.lit >> lane & 1, shaded = zeros.shaded >> lane & 1;
@@ -111,10 +129,17 @@ std::vector<std::optional<SpecularSearch>> SphereSearch::find(std::span<const Ve
     std::vector<std::optional<SpecularSearch>> found(points.size());
     PointLanes lanes;
     SphereZeros zeros;
+    FrontZeros front;
     for (std::size_t i = 0; i < points.size(); i += kPointLanes) {
         const std::size_t count = std::min(kPointLanes, points.size() - i);
         for (std::size_t lane = 0; lane < kPointLanes; ++lane)
             lanes.set(lane, points[i + std::min(lane, count - 1)]);
+        if (asks_front_) {
+            find_front_zeros(sphere_, query_.camera.eye, lanes, front);
+            for (std::size_t lane = 0; lane < count; ++lane)
+                found[i + lane] = settle_front(front, lane, points[i + lane]);
+            continue;
+        }
         find_zeros(sphere_, query_.camera.eye, lanes, zeros);
         for (std::size_t lane = 0; lane < count; ++lane)
             found[i + lane] = settle_both(zeros, lane, points[i + lane]);

@@ -22,13 +22,13 @@ constexpr int kColumns = 129, kRows = 97;
 const Vec3 kSize(8, 1.2, 6);
 
 /// What stands over the terrain, and who looks at it.
-struct Sight {
+struct SightLine {
     const char* name;
     const char* camera;
     const char* optic;
 };
 
-constexpr std::array<Sight, 5> kSights{{
+constexpr std::array<SightLine, 5> kSights{{
     {"a camera over it", R"("yfov": 50, "lookAt": {"eye": [0.2, 1.6, 3.6], "at": [0, 0.4, 0]})", ""},
     {"a camera high above", R"("yfov": 60, "lookAt": {"eye": [0, 7, 0], "at": [0, 0, 0], "up": [0, 0, -1]})",
      ""},
@@ -46,7 +46,7 @@ std::string heights_file() {
     return file;
 }
 
-std::unique_ptr<World> terrain_seen(const Sight& sight, const std::string& keys) {
+std::unique_ptr<World> terrain_seen(const SightLine& sight, const std::string& keys) {
     const std::string json =
         std::string(
             R"({"version": 1, "film": {"width": 160, "height": 120}, "background": {"color": [0.3, 0.4, 0.6]},
@@ -121,7 +121,7 @@ Farthest farthest(const World& world, const std::vector<Vec3>& places, const std
 }  // namespace
 
 TEST_CASE("no sample of a terrain with a tolerance is seen farther from where it belongs", "[terrain][law]") {
-    for (const Sight& sight : kSights) {
+    for (const SightLine& sight : kSights) {
         const auto whole = terrain_seen(sight, "");
         const std::vector<Vec3> places = places_of(*whole);
         std::size_t before = terrain_of(*whole).object.triangles.size();

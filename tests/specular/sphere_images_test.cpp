@@ -81,6 +81,55 @@ TEST_CASE("the zeros that are said of a sphere are those of Alhazen's problem", 
     CHECK(wide.shaded > 200);
 }
 
+TEST_CASE("what an eye outside sees in a sphere's front is what Alhazen's problem has there",
+          "[specular][oracle]") {
+    Draw draw(88);
+    int one = 0, none = 0, silent = 0, wrong = 0, elsewhere = 0;
+    for (int round = 0; round < 400; ++round) {
+        const CubeSphere sphere(draw.in_cube(1), draw.log_uniform(0.3, 3));
+        const auto somewhere = [&](double nearest, double furthest) {
+            const Vec3 direction = draw.unit();
+            return sphere.center + sphere.radius * draw.log_uniform(nearest, furthest) * direction;
+        };
+        const Vec3 eye = somewhere(1.01, 20);
+        // Half of the points lie where the way passes close by the sphere's edge.
+        const Vec3 out = normalize(eye - sphere.center);
+        PointLanes points;
+        for (std::size_t i = 0; i < kPointLanes; ++i) {
+            const Vec3 aside = normalize(cross(out, draw.unit()));
+            const double distance = length(eye - sphere.center) / sphere.radius;
+            const double sine = (1 + draw.uniform(-0.02, 0.02)) / distance;
+            const Vec3 along = sine * aside - std::sqrt(std::max(0.0, 1 - sine * sine)) * out;
+            points.set(i, i % 2 == 0 ? somewhere(0.3, 20)
+                                     : eye + sphere.radius * distance * draw.uniform(0.5, 3) * along);
+        }
+        FrontZeros zeros;
+        find_front_zeros({sphere.center, sphere.radius}, eye, points, zeros);
+        CHECK((zeros.one & zeros.none) == 0);
+        for (std::size_t i = 0; i < kPointLanes; ++i) {
+            const bool is_one = zeros.one >> i & 1, is_none = zeros.none >> i & 1;
+            one += is_one;
+            none += is_none;
+            silent += !is_one && !is_none;
+            if (!is_one && !is_none) continue;
+            std::vector<Vec3> front = alhazen(sphere, eye, points.at(i));
+            std::erase_if(front, [&](const Vec3& root) {
+                const Vec3 normal = root - sphere.center;
+                return dot(eye - root, normal) <= 0 || dot(points.at(i) - root, normal) <= 0;
+            });
+            wrong += front.size() != (is_one ? 1 : 0);
+            elsewhere += is_one && !is_near_any(front, sphere.center + sphere.radius * zeros.at.at(i),
+                                                1e-6 * sphere.radius);
+        }
+    }
+    CAPTURE(one, none, silent, elsewhere);
+    CHECK(wrong == 0);
+    CHECK(elsewhere <= one / 200);
+    CHECK(one > 2000);
+    CHECK(none > 1000);
+    CHECK(silent < 500);
+}
+
 TEST_CASE("of a sphere nothing is said where the way to the point grazes it or ends on it", "[specular]") {
     const Vec3 eye(0, 0, 4);
     PointLanes points;
