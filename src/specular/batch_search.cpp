@@ -23,7 +23,7 @@ constexpr double kFlatPart = 0.05;
 constexpr double kSmallPart = 0x1p-10;
 /// A tree of more nodes (some 900 bytes each) grows no further, and one of more than so many is not kept.
 constexpr std::size_t kMostNodes = 1u << 16;
-constexpr std::size_t kMostKept = 3u << 14;
+constexpr std::size_t kMostKept = 1u << 15;
 
 }  // namespace
 

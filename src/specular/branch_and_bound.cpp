@@ -147,22 +147,17 @@ bool BranchAndBound::has_settled(const CellBox& box) const {
                        [&](const CellBox& b) { return is_within(box, b); });
 }
 
-bool BranchAndBound::must_split(TreeNode& cell) {
-    const std::size_t zeros = zeros_.size(), images = result_.images.size();
-    const Verdict verdict = ask_newton(cell);
-    if (verdict == Verdict::kSettled) {
-        const SurfaceParameter zero = zeros_.back().at;
-        zeros_.resize(zeros);
-        result_.images.resize(images);
-        settle_again(zero);
-    }
-    return verdict == Verdict::kSplit;
+/// Asks the cells around it from the largest on: a search of the whole settles the zero there, if there is.
+bool BranchAndBound::must_split(TreeNode& cell, const AskCell& ask) {
+    if (has_settled(cell.box)) return false;
+    return descend_to(cell.box.face, cell.box.middle(), ask, &cell);
 }
 
-/// The zero near `start`, by its cell.
-void BranchAndBound::settle_near(SurfaceParameter start, const AskCell& ask) {
+/// The zero near one for a point close by, by its cell.
+void BranchAndBound::settle_near(const LawZero& near, const AskCell& ask) {
+    SurfaceParameter start = near.at;
     for (int step = 0; step < kNearSteps; ++step) {
-        const SurfacePoint point = surface_.eval(start.face, start.uv);
+        const SurfacePoint point = step == 0 ? near.point : surface_.eval(start.face, start.uv);
         const SpecularPath path = specular_path(query_, point.position);
         start.uv -= glm::inverse(path_hessian(query_, path, point)) *
                     Vec2(dot(path.bend, point.du), dot(path.bend, point.dv));
@@ -172,21 +167,16 @@ void BranchAndBound::settle_near(SurfaceParameter start, const AskCell& ask) {
     settle_at(start, ask);
 }
 
-/// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
-void BranchAndBound::settle_again(const SurfaceParameter& zero) {
-    if (has_settled({zero.face, zero.uv, zero.uv})) return;
-    const std::size_t known = zeros_.size();
-    settle_at(zero, [](TreeNode&) { return CellWord::kUnknown; });
-    is_lost_ = is_lost_ || zeros_.size() == known;
+void BranchAndBound::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
+    if (!has_settled({zero.face, zero.uv, zero.uv})) descend_to(zero.face, zero.uv, ask, nullptr);
 }
 
 /// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
-/// there is, and notes the largest in which it stands alone.
-void BranchAndBound::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
-    if (has_settled({zero.face, zero.uv, zero.uv})) return;
+/// there is, and notes the largest in which it stands alone. True where none down to `last` decided.
+bool BranchAndBound::descend_to(Id face, const Vec2& uv, const AskCell& ask, const TreeNode* last) {
     TreeNode* alone = nullptr;
-    for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
-        if (cell->view.is_behind) return;
+    for (TreeNode* cell = &tree_.face(face); cell; cell = cell == last ? nullptr : half_around(*cell, uv)) {
+        if (cell->view.is_behind) return false;
         const CellWord word = ask(*cell);
         if (!alone && word == CellWord::kNarrow) alone = cell;
         if (word != CellWord::kUnknown) continue;
@@ -199,8 +189,10 @@ void BranchAndBound::settle_at(const SurfaceParameter& zero, const AskCell& ask)
             else
                 is_lost_ = true;
         }
-        if (verdict != Verdict::kSplit || is_last(*cell)) return;
+        if (verdict != Verdict::kSplit) return false;
+        if (is_last(*cell)) return true;
     }
+    return true;
 }
 
 /// The half that holds a place; null where that is near the other.
@@ -245,7 +237,7 @@ SpecularSearch BranchAndBound::run(const SpecularQuery& query) {
 void BranchAndBound::begin_near(const SpecularQuery& query, std::span<const LawZero> near,
                                 const AskCell& ask) {
     begin(query);
-    for (const LawZero& start : near) settle_near(start.at, ask);
+    for (const LawZero& start : near) settle_near(start, ask);
 }
 
 void BranchAndBound::begin_at(const SpecularQuery& query, std::span<const SurfaceParameter> zeros,

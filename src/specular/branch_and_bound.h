@@ -50,7 +50,7 @@ class BranchAndBound {
     bool has_settled(const CellBox& box) const;
     std::span<const CellBox> settled() const { return isolated_; }
     /// Of a cell in which the Newton operator decides: whether it has to be halved.
-    bool must_split(TreeNode& cell);
+    bool must_split(TreeNode& cell, const AskCell& ask);
     /// Notes that so many cells were looked at.
     void look(std::size_t cells) { result_.cells += cells; }
     /// Gives up: end_near then has no answer.
@@ -84,9 +84,9 @@ class BranchAndBound {
     SurfacePoint point_at(Id face, const Vec2& uv) const;
     bool in_domain(Id face, const Vec2& uv) const;
     void refine_undecided();
-    void settle_near(SurfaceParameter start, const AskCell& ask);
+    void settle_near(const LawZero& near, const AskCell& ask);
     void settle_at(const SurfaceParameter& zero, const AskCell& ask);
-    void settle_again(const SurfaceParameter& zero);
+    bool descend_to(Id face, const Vec2& uv, const AskCell& ask, const TreeNode* last);
     TreeNode* half_around(TreeNode& cell, const Vec2& uv);
 
     const Surface& surface_;

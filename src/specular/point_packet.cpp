@@ -162,7 +162,8 @@ LaneBits PointPacket::judge(TreeNode& cell, LaneBits lanes) {
     const NewtonLanes newton = newton_lanes(question, tree_.terms_of(cell), cell.box.half());
     lanes &= ~newton.leaves;
     for_each_lane(lanes & newton.contracts, [&](std::size_t lane) {
-        if (!walks_[lane].must_split(cell)) lanes &= ~(LaneBits{1} << lane);
+        if (!walks_[lane].must_split(cell, [&](TreeNode& one) { return ask(one, lane); }))
+            lanes &= ~(LaneBits{1} << lane);
         if (walks_[lane].is_lost()) lose(LaneBits{1} << lane);
     });
     if (newton.contracts != 0) note_settled();

@@ -26,6 +26,7 @@ constexpr double kParameterTolerance = 1e-9;
 // stands still, and curvature has no bound.
 constexpr double kMostAtRest = 1e-3;
 constexpr double kLastStep = 1e-6;        // in (u, v): Newton's error after it is below rounding
+constexpr double kLeastStep = 1e-14;      // in (u, v): of the size of rounding itself
 constexpr double kDifferenceStep = 1e-5;  // cube root of the rounding unit, for central differences in (u, v)
 
 /// The two tangents that the law is tested along.
@@ -145,10 +146,11 @@ double largest(const Vec2& v) {
 }
 
 /// One last undamped step, which brings grazing images from the tolerance down to rounding. Longer steps than
-/// kLastStep come from a singular Jacobian (a point on a caustic) and are not taken.
+/// kLastStep come from a singular Jacobian (a point on a caustic) and are not taken, shorter ones than
+/// kLeastStep change nothing.
 void polish(const Surface& surface, const SpecularQuery& query, const Mat2& jacobian, Iterate& iterate) {
     const Vec2 step = damped_step(iterate, jacobian, 0);
-    if (largest(step) > kLastStep) return;
+    if (largest(step) > kLastStep || largest(step) < kLeastStep) return;
     const Vec2 uv = clamped_to(surface.domain(iterate.at.face), iterate.at.uv + step);
     const Iterate next = evaluate(surface, {iterate.at.face, uv}, query);
     if (next.residual < iterate.residual) iterate = next;

@@ -3,8 +3,8 @@
 namespace trilens {
 namespace {
 
-/// Parts of cells whose normals turn by less than this are not asked whether they are hidden.
-constexpr double kLeastTurn = 0.1;
+/// So often cells within cells are asked whether they are hidden.
+constexpr int kLooks = 5;
 
 }  // namespace
 
@@ -40,37 +40,45 @@ TreeNode* ViewTree::add_group(std::size_t index) {
 
 /// Whether the surface hides a cell of which one side is known to be turned to the eye. What is seen in the
 /// middle is taken to be seen all over.
-void ViewTree::look_at(TreeNode& cell) const {
-    if (!cell.may_hide || cell.view.is_behind || !cell.view.knows_side) return;
-    const InSight sight = occlusion_.look(query_.camera.eye, cell.box, *cell.bounds);
+void ViewTree::look_at(TreeNode& cell) {
+    if (cell.looks_left == 0 || cell.view.is_behind || !cell.view.knows_side) return;
+    const auto ask = [&] { return occlusion_.look(query_.camera.eye, cell.box, *cell.bounds); };
+    InSight sight = InSight::kUnknown;
+    if (!cell.stored) {
+        sight = ask();
+    } else {
+        const auto [known, is_new] = in_sight_.try_emplace(cell.stored, sight);
+        if (is_new) known->second = ask();
+        sight = known->second;
+    }
     cell.view.is_behind = sight == InSight::kHidden;
-    cell.may_hide = sight == InSight::kUnknown && cell.place.normal_radius >= kLeastTurn;
+    cell.looks_left = sight == InSight::kUnknown ? cell.looks_left - 1 : 0;
 }
 
 TreeNode* ViewTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored,
-                             bool may_hide) {
+                             int looks_left) {
     TreeNode* node = add(place_of(bounds));
     node->box = box;
     node->bounds = &bounds;
     node->stored = stored;
-    node->may_hide = may_hide;
+    node->looks_left = looks_left;
     look_at(*node);
     return node;
 }
 
-TreeNode* ViewTree::add_stored(const SurfaceCell& cell, bool may_hide) {
+TreeNode* ViewTree::add_stored(const SurfaceCell& cell, int looks_left) {
     if (is_outside(surface_.domain(cell.box.face), cell.box)) return nullptr;
-    return add_cell(cell.box, cell.bounds, &cell, may_hide);
+    return add_cell(cell.box, cell.bounds, &cell, looks_left);
 }
 
-TreeNode* ViewTree::add_fresh(const CellBox& box, bool may_hide) {
+TreeNode* ViewTree::add_fresh(const CellBox& box, int looks_left) {
     if (is_outside(surface_.domain(box.face), box)) return nullptr;
     return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), nullptr,
-                    may_hide);
+                    looks_left);
 }
 
 TreeNode& ViewTree::face(Id face) {
-    if (!faces_[face]) faces_[face] = add_stored(cells_.faces()[face], may_hide_);
+    if (!faces_[face]) faces_[face] = add_stored(cells_.faces()[face], may_hide_ ? kLooks : 0);
     return *faces_[face];
 }
 
@@ -88,11 +96,11 @@ void ViewTree::halve(TreeNode& node) {
         node.halves[1] = group.leaf ? nullptr : add_group(group.second);
     } else if (const CellHalves* halves = node.stored ? cells_.halves(*node.stored) : nullptr) {
         for (std::size_t half = 0; half < 2; ++half)
-            node.halves[half] = add_stored((*halves)[half], node.may_hide);
+            node.halves[half] = add_stored((*halves)[half], node.looks_left);
     } else {
         const auto [first, second] = halves_of(node.box, node.bounds->middle);
-        node.halves[0] = add_fresh(first, node.may_hide);
-        node.halves[1] = add_fresh(second, node.may_hide);
+        node.halves[0] = add_fresh(first, node.looks_left);
+        node.halves[1] = add_fresh(second, node.looks_left);
     }
 }
 

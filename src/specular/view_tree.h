@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,7 @@ class NodePool {
 struct TreeNode {
     PlaceBounds place;
     EyeView view;                              // of a cell that the surface hides: behind the camera
-    bool may_hide = false;                     // of a cell: whether cells within may be hidden
+    int looks_left = 0;                        // of a cell: how often more cells within are asked if hidden
     CellBox box;                               // of a cell
     const SurfaceBounds* bounds = nullptr;     // of a cell; null for a group
     std::size_t group = 0;                     // of a group: its index
@@ -75,10 +76,10 @@ class ViewTree {
     TreeNode* add(const PlaceBounds& place);
     TreeNode* add_group(std::size_t index);
     TreeNode* add_cell(const CellBox& box, const SurfaceBounds& bounds, const SurfaceCell* stored,
-                       bool may_hide);
-    TreeNode* add_stored(const SurfaceCell& cell, bool may_hide);
-    TreeNode* add_fresh(const CellBox& box, bool may_hide);
-    void look_at(TreeNode& cell) const;
+                       int looks_left);
+    TreeNode* add_stored(const SurfaceCell& cell, int looks_left);
+    TreeNode* add_fresh(const CellBox& box, int looks_left);
+    void look_at(TreeNode& cell);
 
     const Surface& surface_;
     const CellBvh& cells_;
@@ -89,6 +90,7 @@ class ViewTree {
     NodePool<SurfaceBounds> fresh_;
     NodePool<CellTerms> terms_;
     std::vector<TreeNode*> faces_;
+    std::unordered_map<const SurfaceCell*, InSight> in_sight_;  // what was asked, also by nodes forgotten
     TreeNode* root_ = nullptr;
 };
 
