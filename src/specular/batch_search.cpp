@@ -32,7 +32,7 @@ BatchSearch::BatchSearch(const Surface& surface, const CellBvh& cells, const Spe
     : surface_(surface),
       cells_(cells),
       limits_(limits),
-      tree_(surface, cells, query),
+      tree_(surface, cells, query, limits.asks_rays),
       group_(surface, *cells.bounder(), tree_, query, limits),
       ball_(query) {}
 
@@ -63,7 +63,7 @@ SpecularSearch BatchSearch::search_whole(const Vec3& point) {
     query.point = point;
     if (tree_.size() < kMostNodes)
         return BranchAndBound(surface_, *cells_.bounder(), tree_, limits_).run(query);
-    ViewTree tree(surface_, cells_, query);
+    ViewTree tree(surface_, cells_, query, limits_.asks_rays);
     return BranchAndBound(surface_, *cells_.bounder(), tree, limits_).run(query);
 }
 

@@ -122,7 +122,7 @@ SpecularSearch SpecularSearcher::find(const SpecularQuery& asked, const SearchLi
         query = sphere.query();
     }
     if (impl_->cells.bounder() && query.own_normals) {
-        ViewTree tree(impl_->surface, impl_->cells, query);
+        ViewTree tree(impl_->surface, impl_->cells, query, limits.asks_rays);
         return BranchAndBound(impl_->surface, *impl_->cells.bounder(), tree, limits).run(query);
     }
     SpecularSearch search;

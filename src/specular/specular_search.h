@@ -15,7 +15,8 @@ namespace trilens {
 struct SearchLimits {
     double smallest_cell = 0x1p-20;    // side of the smallest cells, in a face's parameters; > 0
     std::size_t most_cells = 100'000;  // looked at for one query; the rest is then undecided
-    int starts = 8;  // surfaces without bounds: refined from regular_starts(surface, starts), >= 1
+    int starts = 8;         // surfaces without bounds: refined from regular_starts(surface, starts), >= 1
+    bool asks_rays = true;  // what a surface hides of itself is asked of rays, which pays with many points
 
     bool operator==(const SearchLimits&) const = default;
 };

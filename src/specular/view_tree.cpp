@@ -8,12 +8,12 @@ constexpr int kLooks = 5;
 
 }  // namespace
 
-ViewTree::ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query)
+ViewTree::ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query, bool asks_rays)
     : surface_(surface),
       cells_(cells),
       query_(query),
       occlusion_(surface, cells),
-      may_hide_(cells.occluder() && !query.camera.parallel) {
+      may_hide_(asks_rays && cells.occluder() && !query.camera.parallel) {
     begin_anew();
 }
 

@@ -57,8 +57,8 @@ struct TreeNode {
 class ViewTree {
   public:
     /// For all queries that differ from this in the point alone. Cells that the surface itself hides from
-    /// the eye are taken for such behind the camera, where `cells` have an occluder.
-    ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query);
+    /// the eye are taken for such behind the camera, where `cells` have an occluder and it `asks_rays`.
+    ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query, bool asks_rays = true);
 
     /// Forgets all nodes: none that it gave is valid after.
     void begin_anew();

@@ -178,13 +178,13 @@ constexpr double kFilmReach = 16;
 
 /// Of a camera with an eye whose film is not linear, the images as points of the surface; their pixels mean
 /// nothing but tell them apart.
-std::vector<SpecularSearch> PointProjector::search(const OpticPath& path,
-                                                   std::span<const Vec3> points) const {
+std::vector<SpecularSearch> PointProjector::search(const OpticPath& path, std::span<const Vec3> points,
+                                                   const SearchLimits& limits) const {
     if (!searches_surfaces()) return std::vector<SpecularSearch>(points.size());
     const SpecularQuery query = specular_query(world_, frame_, path.optic, path.path);
     const SpecularSearcher& searcher = *searcher_[path.optic];
-    return path.path == Path::kRefract ? searcher.find_each_in_body(query, points)
-                                       : searcher.find_each(query, points);
+    return path.path == Path::kRefract ? searcher.find_each_in_body(query, points, limits)
+                                       : searcher.find_each(query, points, limits);
 }
 
 /// Where the film shows what a search found on the surface.

@@ -23,6 +23,8 @@ constexpr double kLeastCosine = 0.866;
 /// searched for at that distance, and then moved: beyond it rounding tells images of neighbouring faces
 /// apart.
 constexpr double kReachInSizes = 1e6;
+/// From so many points on it pays to know what an optic hides of itself.
+constexpr std::size_t kManyPoints = 4000;
 /// An image of a point that was searched for within reach is another one if it moves by more pixels than
 /// this.
 constexpr double kMostMove = 8;
@@ -313,7 +315,9 @@ void PointProjector::project(std::span<const ProjectedPoint> points, std::span<c
     std::vector<Vec3> of_some;
     for (const std::size_t p : some) of_some.push_back(within_reach(points[p]));
     std::vector<std::vector<SpecularSearch>> searched;
-    for (const OpticPath& path : paths_) searched.push_back(search(path, of_some));
+    SearchLimits limits;
+    limits.asks_rays = points.size() >= kManyPoints;
+    for (const OpticPath& path : paths_) searched.push_back(search(path, of_some, limits));
     for (std::size_t k = 0; k < some.size(); ++k) {
         const Vec3& point = of_some[k];
         const ProjectedPoint& asked = points[some[k]];

@@ -46,7 +46,8 @@ class PointProjector {
     void move_to(const ProjectedPoint& point, PointProjection& result) const;
     bool may_have_several() const;
     void keep_strongest(PointProjection& result) const;
-    std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points) const;
+    std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points,
+                                       const SearchLimits& limits) const;
     std::vector<OpticImage> optic_images(const OpticPath& path, const Vec3& point,
                                          const SpecularSearch& searched, PointProjection& result) const;
     void refine_on_film(const OpticPath& path, const Vec3& point, std::vector<OpticImage>& images) const;
