@@ -17,6 +17,11 @@ constexpr int kMostHalvings = 5, kMostCuts = 4;
 /// Beams that the plane cuts off are left flat, which loses some of their light, where it is this share of
 /// what is faint.
 constexpr double kFaintFlat = 0.05;
+/// Light so many times brighter than what is faint may fall beside its place as far as any; what is brighter
+/// less far by as much, but for so small a share.
+constexpr double kBright = 60, kLeastRoom = 1e-3;
+/// Beams are in pieces as if the tolerance were so many times what they may be off by, where that is less.
+constexpr double kPiecesOff = 4;
 /// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, and its
 /// quarters' areas and its light differ.
 constexpr double kOneBends = 0.02, kOneDiffers = 0.03;
@@ -110,7 +115,7 @@ struct PlaneBeams::PartsMaker {
         const double room = room_of(beam, *at);
         if (bulge > kNearlyStraight * room && level < kMostHalvings && is_off(end, middle, *at, room))
             return add_parts(end, middle, level);
-        add_curved(beam, *at, bulge, level);
+        add_curved(beam, *at, std::min(params.tolerance, kPiecesOff * room), level);
     }
 
     /// Whether the hull lies beside the face by more than `room`.
@@ -132,8 +137,10 @@ struct PlaneBeams::PartsMaker {
             strength =
                 std::max({strength, sum_of(beam.corners.end[k]->light), sum_of(beam.middle[k]->light)});
         const double area = 0.5 * std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
-        if (strength * beam.corners.measure < params.faint_light * area) return INFINITY;
-        return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength);
+        const double brightness = strength * beam.corners.measure / (params.faint_light * area);
+        if (brightness < 1) return INFINITY;
+        return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength) *
+               std::clamp(kBright / brightness, kLeastRoom, 1.0);
     }
 
     /// How much its quarters' areas differ from a quarter, and its light from linear, as shares.
@@ -155,16 +162,16 @@ struct PlaneBeams::PartsMaker {
         return brightest > 0 ? std::max(most, bends / brightest) : most;
     }
 
-    int sides_of(const FallenCurve& curve, double bulge) const {
+    static int sides_of(const FallenCurve& curve, double bulge, double tolerance) {
         const double uneven = unevenness(curve);
-        if (bulge <= kOneBends * params.tolerance && uneven <= kOneDiffers) return 1;
-        return bulge <= kFourBend * params.tolerance && uneven <= kFourDiffer ? 2 : 4;
+        if (bulge <= kOneBends * tolerance && uneven <= kOneDiffers) return 1;
+        return bulge <= kFourBend * tolerance && uneven <= kFourDiffer ? 2 : 4;
     }
 
-    void add_curved(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double bulge, int level) {
+    void add_curved(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double tolerance, int level) {
         Curved one{beam.corners, {at, beam.lights()}, index, way_of(beam.corners.end, level)};
         if (one.way == Way::kStopped) return;
-        one.sides = sides_of(one.curve, bulge);
+        one.sides = sides_of(one.curve, bulge_on_plane(at), tolerance);
         one.mean_light = mean_light(one.curve.light, one.sides);
         const LightBeam& of = source.beams.beams[index];
         one.is_plain = one.way == Way::kFree && source.beams.histories[of.history].medium == kNone;

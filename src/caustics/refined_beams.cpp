@@ -114,7 +114,7 @@ void RefinedBeams::find_sides(const Progress& progress) {
     });
 }
 
-/// Where the history ends between, its border is as straight as the beam has it.
+/// Where the history ends between, or is torn, its border is as straight as the beam has it.
 BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const {
     const LightBeam& of = beams_->beams[beam];
     const LightHistory& history = beams_->histories[of.history];
@@ -123,7 +123,8 @@ BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const 
     end.place = 0.5 * (a.place + b.place);
     end.film = window.density(end.place);
     const Ray ray = window.ray(end.place);
-    if (const auto single = follow_history(space_, source_, ray, history)) {
+    const auto single = follow_history(space_, source_, ray, history);
+    if (single && !is_beyond_tear(a.origin, single->path.ray.origin, b.origin)) {
         end.origin = single->path.ray.origin, end.direction = single->path.ray.direction;
         end.arriving = single->path.arriving;
         if (is_free(space_, ray, *single)) end.light = single->path.light;

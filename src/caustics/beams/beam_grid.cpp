@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
+#include "caustics/beams/quadratic.h"
 
 namespace trilens {
 namespace {
@@ -12,6 +14,10 @@ namespace {
 /// Paths that carry less than this share of the strongest path of all are not looked at closely: their beams
 /// are as the others need them.
 constexpr double kFaintLight = 0.03;
+
+/// A triangle's base may be bent by so many tolerances: what falls is as a quadratic has it, which is off by
+/// a fraction of that, and is divided where it is too much.
+constexpr double kMostBends = 4;
 
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
@@ -128,15 +134,28 @@ void BeamGrid::split(Id triangle) {
     if (other != kNone) bisect(other, middle);
 }
 
+double BeamGrid::mean_arriving() const {
+    double sum = 0;
+    for (const Triangle& triangle : triangles_) {
+        const auto& [a, b, c] = triangle.corner;
+        const double measure = window_.measure(place(a), place(b), place(c));
+        for (const Id corner : triangle.corner)
+            if (!paths(corner).empty()) sum += measure / 3 * strength_of(paths(corner).front().arriving);
+    }
+    return sum / (space_.size * space_.size);
+}
+
 /// The paths of one history at a triangle's corners, and in the middle of its base.
 struct BeamGrid::Corners {
     const LightPath &a, &b, &middle;
     const LightPath* c;  // null: it is not there
+    double measure = 0;  // of the light's film in the triangle
 };
 
 /// Whether the middle's light falls too far from the middle between that of the base's ends, where it meets
-/// an object, or the triangle's halves are too unequally bright there.
-bool BeamGrid::is_uneven(const Corners& corners, const BeamGridParams& params) const {
+/// an object, or the triangle's halves are too unequally bright there. What is spread so widely that it is
+/// faint may fall where it will.
+bool BeamGrid::is_uneven(const Corners& corners, double tolerance) const {
     const Ray& ray = corners.middle.ray;
     if (!std::isfinite(corners.middle.object)) return false;
     const Vec3 there = ray.origin + corners.middle.object * ray.direction;
@@ -150,68 +169,116 @@ bool BeamGrid::is_uneven(const Corners& corners, const BeamGridParams& params) c
     const std::optional<Vec3> at_a = fallen(corners.a), at_b = fallen(corners.b);
     if (!at_a || !at_b) return true;
     // Paths that carry less may be off by more.
-    const double room = params.tolerance * space_.size * brightest_ / strength_of(corners.middle.light);
-    if (length(0.5 * (*at_a + *at_b) - there) > room) return true;
+    const double strength = strength_of(corners.middle.light);
+    const double room = kMostBends * tolerance * brightest_ / strength;
+    const bool is_bent = length(0.5 * (*at_a + *at_b) - there) > room;
     const std::optional<Vec3> at_c = corners.c ? fallen(*corners.c) : std::nullopt;
-    if (!at_c) return false;
-    const double first = triple(*at_a - there, *at_c - there, ray.direction),
-                 second = triple(*at_c - there, *at_b - there, ray.direction);
-    const double both = std::fabs(first) + std::fabs(second);
-    return both > room * room && std::fabs(first - second) > kUnevenHalves * both;
+    if (!at_c) return is_bent;
+    const double first = std::fabs(triple(*at_a - there, *at_c - there, ray.direction)),
+                 second = std::fabs(triple(*at_c - there, *at_b - there, ray.direction));
+    if (strength * corners.measure < faint_ * 0.5 * (first + second)) return false;
+    return is_bent ||
+           (first + second > room * room && std::fabs(first - second) > kUnevenHalves * (first + second));
 }
 
-bool BeamGrid::is_too_coarse(const Triangle& triangle, const BeamGridParams& params) const {
+/// Whether its corners have different histories of any that carry something.
+bool BeamGrid::is_mixed(const Triangle& triangle) const {
     const auto& [a, b, c] = triangle.corner;
-    const std::vector<LightPath>&at_a = paths(a), &at_b = paths(b),
-          &at_middle = paths(middles_.at(edge_of(a, b)));
-    const std::vector<LightPath>& at_c = paths(c);
     const double least = kFaintLight * brightest_;
-    const auto differ = [&](const std::vector<LightPath>& one, const std::vector<LightPath>& other) {
-        return !has_all(one, other, least) || !has_all(other, one, least);
+    const auto differ = [&](Id one, Id other) {
+        return !has_all(paths(one), paths(other), least) || !has_all(paths(other), paths(one), least);
     };
-    if (triangle.level < params.mixed_levels &&
-        (differ(at_a, at_b) || differ(at_a, at_middle) || differ(at_a, at_c)))
-        return true;
-    for (const LightPath& path : at_middle) {
-        const double light = strength_of(path.light);
-        if (light < least) continue;
-        const LightPath *on_a = find_history(at_a, path), *on_b = find_history(at_b, path);
-        if (on_a && on_b && is_uneven({*on_a, *on_b, path, find_history(at_c, path)}, params)) return true;
+    return differ(a, b) || differ(a, middles_.at(edge_of(a, b))) || differ(a, c);
+}
+
+/// Those at both ends of its base that are not in its middle, or not where they should be.
+std::vector<BeamGrid::SideHistory> BeamGrid::uneven_histories(const Triangle& triangle) const {
+    const Id a = std::min(triangle.corner[0], triangle.corner[1]),
+             b = std::max(triangle.corner[0], triangle.corner[1]);
+    const std::vector<LightPath>&at_middle = paths(middles_.at(edge_of(a, b))),
+          &at_c = paths(triangle.corner[2]);
+    const double least = kFaintLight * brightest_;
+    const double measure = window_.measure(place(a), place(b), place(triangle.corner[2]));
+    std::vector<SideHistory> uneven;
+    for (Id i = 0; i < paths(a).size(); ++i) {
+        const LightPath& on_a = paths(a)[i];
+        const LightPath *on_b = find_history(paths(b), on_a), *middle = find_history(at_middle, on_a);
+        if (!on_b || !middle || strength_of(middle->light) < least) continue;
+        if (is_uneven({on_a, *on_b, *middle, find_history(at_c, on_a), measure}, tolerance_))
+            uneven.emplace_back(a, b, i);
     }
-    return false;
+    return uneven;
+}
+
+/// Of triangles whose bases' middles have been traced. A history's tear is a border as that between two is.
+std::vector<char> BeamGrid::are_too_coarse(std::span<const Id> asked, const BeamGridParams& params,
+                                           const Progress& progress) {
+    std::vector<char> coarse(asked.size());
+    std::vector<std::vector<SideHistory>> uneven(asked.size());
+    parallel_for(asked.size(), 256, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const Triangle& triangle = triangles_[asked[i]];
+            uneven[i] = uneven_histories(triangle);
+            if (triangle.level < params.mixed_levels) coarse[i] = !uneven[i].empty() || is_mixed(triangle);
+        }
+    });
+    std::vector<SideHistory> doubtful;
+    for (std::size_t i = 0; i < asked.size(); ++i)
+        if (triangles_[asked[i]].level >= params.mixed_levels)
+            doubtful.insert(doubtful.end(), uneven[i].begin(), uneven[i].end());
+    find_tears(std::move(doubtful), progress);
+    for (std::size_t i = 0; i < asked.size(); ++i)
+        if (triangles_[asked[i]].level >= params.mixed_levels)
+            coarse[i] = std::any_of(uneven[i].begin(), uneven[i].end(),
+                                    [&](const SideHistory& one) { return !tears_.at(one); });
+    return coarse;
+}
+
+/// Splits those of the triangles that are marked. What came of it: halves of what was split, wherever they
+/// stand.
+std::vector<Id> BeamGrid::split_marked(std::span<const Id> triangles, std::span<const char> marked) {
+    const std::size_t before = triangles_.size();
+    const std::vector<Triangle> was(triangles_);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const Id t = triangles[i];
+        if (marked[i] && triangles_[t].corner == was[t].corner) split(t);  // else its neighbour has done it
+    }
+    std::vector<Id> halves;
+    for (Id t = 0; t < triangles_.size(); ++t)
+        if (t >= before || triangles_[t].corner != was[t].corner) halves.push_back(t);
+    return halves;
+}
+
+/// Rounds until nothing is too coarse: each takes triangles of one level, and neighbours that they need.
+void BeamGrid::divide_from(std::vector<Id> asked, const BeamGridParams& params, const Progress& progress) {
+    const double rounds = params.most_levels + 1;
+    for (double round = 0; !asked.empty(); ++round) {
+        for (const Id t : asked) middle_of(triangles_[t].corner[0], triangles_[t].corner[1]);
+        trace_new_corners(progress.part(std::min(round / rounds, 1.0), round < rounds ? 1 / rounds : 0));
+        if (faint_ == 0) faint_ = kFaintShare * mean_arriving();
+        std::vector<char> coarse = are_too_coarse(asked, params, progress);
+        for (std::size_t i = 0; i < asked.size(); ++i)
+            if (coarse[i] && !has_room(asked[i], params)) ++coarse_, coarse[i] = false;
+        asked = split_marked(asked, coarse);
+    }
+    trace_new_corners(progress.part(1, 0));
 }
 
 void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
     tolerance_ = params.tolerance * space_.size;
     start(params.first_cells);
-    std::vector<Id> asked(triangles_.size());
-    for (Id t = 0; t < asked.size(); ++t) asked[t] = t;
     coarse_ = 0;
-    // Each round takes triangles of one level, and neighbours that they need.
-    const double rounds = params.most_levels + 1;
-    for (double round = 0; !asked.empty(); ++round) {
-        for (const Id t : asked) middle_of(triangles_[t].corner[0], triangles_[t].corner[1]);
-        trace_new_corners(progress.part(std::min(round / rounds, 1.0), round < rounds ? 1 / rounds : 0));
-        std::vector<char> coarse(asked.size());
-        parallel_for(asked.size(), 256, [&](std::size_t from, std::size_t to) {
-            for (std::size_t i = from; i < to; ++i) coarse[i] = is_too_coarse(triangles_[asked[i]], params);
-        });
-        const std::size_t before = triangles_.size();
-        std::vector<Triangle> was(triangles_);
-        for (std::size_t i = 0; i < asked.size(); ++i) {
-            const Id t = asked[i];
-            if (!coarse[i] || triangles_[t].corner != was[t].corner) continue;  // done by its neighbour
-            if (triangles_[t].level >= params.most_levels || triangles_.size() >= params.most_triangles)
-                ++coarse_;
-            else
-                split(t);
-        }
-        // What came of it: halves of what was split, wherever they stand.
-        asked.clear();
-        for (Id t = 0; t < triangles_.size(); ++t)
-            if (t >= before || triangles_[t].corner != was[t].corner) asked.push_back(t);
+    std::vector<Id> asked(triangles_.size());
+    std::iota(asked.begin(), asked.end(), Id{0});
+    constexpr double kMost = 0.9;
+    for (Progress part = progress.part(0, kMost); !asked.empty(); part = progress.part(kMost, 0)) {
+        divide_from(asked, params, part);
+        follow_tears(part);
+        asked = torn_oddly();
+        std::vector<char> divided(asked.size());
+        for (std::size_t i = 0; i < asked.size(); ++i) divided[i] = has_room(asked[i], params);
+        asked = split_marked(asked, divided);
     }
-    trace_new_corners(progress.part(1, 0));
 }
 
 }  // namespace trilens

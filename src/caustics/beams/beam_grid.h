@@ -4,12 +4,16 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
 #include "base/util/error.h"
+#include "caustics/beams/history_tears.h"
 #include "caustics/beams/light_paths.h"
 
 namespace trilens {
@@ -61,8 +65,15 @@ class BeamGrid {
     const std::vector<LightPath>& paths(Id corner) const { return paths_[corner].paths; }
     const CutPaths& cut(Id corner) const { return paths_[corner].cut; }
     std::size_t corner_count() const { return places_.size(); }
+    /// A history on a triangle's side: its corners, the smaller number first, and which path it is of that.
+    using SideHistory = std::tuple<Id, Id, Id>;
+    /// What was found out of sides at both of whose corners a history is: its tear, or that it is whole. Of
+    /// triangles that a tear goes through all such sides are known.
+    const std::map<SideHistory, std::optional<HistoryTear>>& tears() const { return tears_; }
     /// Path of all: the sum of its colours.
     double brightest() const { return brightest_; }
+    /// The light that comes to the first optic over the square of the scene's size: the sum of its colours.
+    double mean_arriving() const;
     /// Triangles that were left too coarse, for want of levels or room.
     std::size_t coarse_count() const { return coarse_; }
 
@@ -75,9 +86,20 @@ class BeamGrid {
     void start(int cells);
     void trace_new_corners(const Progress& progress);
     Id middle_of(Id a, Id b);
-    bool is_too_coarse(const Triangle& triangle, const BeamGridParams& params) const;
+    bool is_mixed(const Triangle& triangle) const;
+    std::vector<SideHistory> uneven_histories(const Triangle& triangle) const;
+    std::vector<char> are_too_coarse(std::span<const Id> triangles, const BeamGridParams& params,
+                                     const Progress& progress);
+    void find_tears(std::vector<SideHistory> sides, const Progress& progress);
+    void follow_tears(const Progress& progress);
+    std::vector<Id> torn_oddly() const;
+    bool has_room(Id triangle, const BeamGridParams& params) const {
+        return triangles_[triangle].level < params.most_levels && triangles_.size() < params.most_triangles;
+    }
+    std::vector<Id> split_marked(std::span<const Id> triangles, std::span<const char> marked);
+    void divide_from(std::vector<Id> asked, const BeamGridParams& params, const Progress& progress);
     struct Corners;
-    bool is_uneven(const Corners& corners, const BeamGridParams& params) const;
+    bool is_uneven(const Corners& corners, double tolerance) const;
     void link(Id triangle);
     void unlink(Id triangle);
     void split(Id triangle);
@@ -97,6 +119,8 @@ class BeamGrid {
     double tolerance_ = 0;
     std::unordered_map<Edge, std::array<Id, 2>> sides_;  // triangles on both sides
     std::unordered_map<Edge, Id> middles_;
+    std::map<SideHistory, std::optional<HistoryTear>> tears_;
+    double faint_ = 0;      // irradiance, the sum of its colours, that may fall beside its place
     double brightest_ = 0;  // path so far: the sum of its colours
     std::size_t coarse_ = 0;
 };

@@ -20,19 +20,6 @@ namespace {
 /// much of a side.
 constexpr double kFaintBorder = 0.03, kStraightBorder = 0.02;
 
-/// The light that comes to the first optic over the square of the scene's size: the sum of its colours.
-double mean_arriving(const BeamGrid& grid) {
-    double sum = 0;
-    for (const BeamGrid::Triangle& triangle : grid.triangles()) {
-        const auto& [a, b, c] = triangle.corner;
-        const double measure = grid.window().measure(grid.place(a), grid.place(b), grid.place(c));
-        for (const Id corner : triangle.corner)
-            if (!grid.paths(corner).empty())
-                sum += measure / 3 * strength_of(grid.paths(corner).front().arriving);
-    }
-    return sum / (grid.scene_size() * grid.scene_size());
-}
-
 /// The corners that were looked at in a node, its own first, and the triangles in it.
 struct NodeCorners {
     std::vector<std::pair<Id, Vec3>> corners;  // with weights of the node's own
@@ -65,6 +52,8 @@ class BeamMaker {
     bool falls(const std::array<Id, 3>& ends) const;
     void add_arriving(Id history, const Vec3& flux);
     void add_beam(const std::array<Id, 3>& ends, Id history);
+    void add_tip(Id a, Id b, Id c, Id history);
+    void add_stump(Id b, Id c, Id without, Id history);
     void add_triangle(const BeamGrid::Triangle& triangle, Id history);
     NodeCorners corners_in(Id node) const;
     bool add_merged(Id history, const NodeCorners& in);
@@ -130,27 +119,42 @@ void BeamMaker::add_beam(const std::array<Id, 3>& ends, Id history) {
     if (falls(ends)) beams_.beams.push_back(beam);
 }
 
+/// A corner and what of its two sides is its history's.
+void BeamMaker::add_tip(Id a, Id b, Id c, Id history) {
+    add_beam({end_of(a, history), border_end(a, b, history), border_end(a, c, history)}, history);
+}
+
+/// Two corners, and what of the sides to the third is their history's.
+void BeamMaker::add_stump(Id b, Id c, Id without, Id history) {
+    const Id at_b = end_of(b, history), at_c = end_of(c, history);
+    const Id from_b = border_end(b, without, history), from_c = border_end(c, without, history);
+    add_beam({at_b, at_c, from_c}, history);
+    add_beam({at_b, from_c, from_b}, history);
+}
+
+/// A tear that ends inside of it is left as it is.
 void BeamMaker::add_triangle(const BeamGrid::Triangle& triangle, Id history) {
-    const auto& corner = triangle.corner;
-    std::array<bool, 3> has{};
-    int count = 0;
-    for (std::size_t k = 0; k < 3; ++k) count += has[k] = histories_.path_at(corner[k], history) != nullptr;
-    if (count == 3) {
+    std::array<Id, 3> corner = triangle.corner;
+    const auto has = [&](Id one) { return histories_.path_at(one, history) != nullptr; };
+    const auto torn = [&](Id one, Id other) { return histories_.is_torn(one, other, history); };
+    const auto count = std::count_if(corner.begin(), corner.end(), has);
+    for (int turn = 0; turn < 3; ++turn) {
+        const auto [a, b, c] = corner;
+        if (count == 1 && has(a)) return add_tip(a, b, c, history);
+        if (count == 2 && !has(a)) {
+            if (!torn(b, c)) return add_stump(b, c, a, history);
+            add_tip(b, c, a, history);
+            return add_tip(c, a, b, history);
+        }
+        if (count == 3 && torn(a, b) && torn(a, c) && !torn(b, c)) {
+            add_tip(a, b, c, history);
+            return add_stump(b, c, a, history);
+        }
+        std::rotate(corner.begin(), corner.begin() + 1, corner.end());
+    }
+    if (count == 3)
         add_beam({end_of(corner[0], history), end_of(corner[1], history), end_of(corner[2], history)},
                  history);
-        return;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Id a = corner[k], b = corner[(k + 1) % 3], c = corner[(k + 2) % 3];
-        if (count == 1 && has[k])
-            add_beam({end_of(a, history), border_end(a, b, history), border_end(a, c, history)}, history);
-        if (count == 2 && !has[k]) {
-            const Id at_b = end_of(b, history), at_c = end_of(c, history);
-            const Id from_b = border_end(b, a, history), from_c = border_end(c, a, history);
-            add_beam({at_b, at_c, from_c}, history);
-            add_beam({at_b, from_c, from_b}, history);
-        }
-    }
 }
 
 NodeCorners BeamMaker::corners_in(Id node) const {
@@ -343,7 +347,7 @@ void BeamMaker::make(const Progress& progress) {
     beams_.windows.push_back(grid_.window());
     histories_.find_borders(progress);
     const std::size_t first_end = beams_.ends.size(), first_beam = beams_.beams.size();
-    merge_ = {grid_.tolerance(), grid_.scene_size(), grid_.brightest(), kFaintShare * mean_arriving(grid_)};
+    merge_ = {grid_.tolerance(), grid_.scene_size(), grid_.brightest(), kFaintShare * grid_.mean_arriving()};
     std::vector<Id> all(beams_.histories.size());
     std::iota(all.begin(), all.end(), Id{0});
     for (Id root = 0; root < grid_.root_count(); ++root) {

@@ -126,6 +126,21 @@ void GridHistories::find_borders(const Progress& progress) {
         for (std::size_t i = from; i < to; ++i) find_borders_on_side(grid_, *sides[i], done);
         done.add(static_cast<double>(to - from));
     });
+    add_tears();
+}
+
+/// They are known already: a border of either end.
+void GridHistories::add_tears() {
+    for (const auto& [side, tear] : grid_.tears()) {
+        if (!tear) continue;
+        const auto& [a, b, path] = side;
+        const Id history = at_corner_[a][path], end[2] = {a, b};
+        for (const std::size_t k : {0, 1}) {
+            border_.try_emplace({end[k], end[1 - k], history}, borders_.size());
+            borders_.push_back(
+                {end[k], end[1 - k], path_at(end[k], history), tear->side[k].place, tear->side[k].path});
+        }
+    }
 }
 
 const HistoryBorder* GridHistories::border_between(Id inside, Id outside, Id history) const {

@@ -31,7 +31,11 @@ class GridHistories {
 
     /// Of a corner; null: it has not that history.
     const LightPath* path_at(Id corner, Id history) const;
-    /// The border on a triangle's side, of which one end has the history.
+    /// Whether the history is at both ends of a triangle's side and torn between them.
+    bool is_torn(Id a, Id b, Id history) const {
+        return border_.contains({a, b, history}) && border_.contains({b, a, history});
+    }
+    /// The border on a triangle's side, of which one end has the history, or between whose ends it is torn.
     const HistoryBorder& border(Id inside, Id outside, Id history) const {
         return borders_[border_.at({inside, outside, history})];
     }
@@ -43,6 +47,7 @@ class GridHistories {
     using Key = std::tuple<Id, Id, Id>;  // inside, outside, history
 
     std::vector<Id> histories_of(const BeamGrid::Triangle& triangle) const;
+    void add_tears();
 
     const BeamGrid& grid_;
     std::vector<std::vector<Id>> at_corner_;  // per corner and path: its history

@@ -1,0 +1,143 @@
+#include "caustics/beams/history_tears.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "base/util/parallel.h"
+#include "caustics/beams/beam_grid.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kTearBisections = 12, kTrials = 3;
+/// A jump that is less than this share of the whole after the trials closes: of a root, as at an outline seen
+/// against something else, a third is left.
+constexpr double kClosesBy = 0.6;
+/// What is left of a tear's after all.
+constexpr double kStaysOpen = 0.4;
+/// The middle of a curve lies no farther from its chord's, in lengths of the chord; at a ball's outline a
+/// third of one.
+constexpr double kWildest = 2;
+
+double jump(const PlacedPath& one, const PlacedPath& other) {
+    return length(one.path.ray.origin - other.path.ray.origin);
+}
+
+/// The history in the middle between two places; none: it is not there.
+std::optional<PlacedPath> middle_path(const BeamGrid& grid, const PlacedPath& one, const Vec2& other) {
+    const std::vector<Step>* only[] = {&one.path.steps};
+    PlacedPath middle{0.5 * (one.place + other), {}};
+    const LightPaths found = grid.paths_at(middle.place, only);
+    const LightPath* same = find_history(found.paths, one.path);
+    if (!same) return std::nullopt;
+    middle.path = *same;
+    return middle;
+}
+
+/// The last of it on the way to where it is not.
+PlacedPath last_before(const BeamGrid& grid, PlacedPath inside, Vec2 outside, int bisections) {
+    for (int i = 0; i < bisections; ++i) {
+        if (auto middle = middle_path(grid, inside, outside))
+            inside = *std::move(middle);
+        else
+            outside = 0.5 * (inside.place + outside);
+    }
+    return inside;
+}
+
+}  // namespace
+
+std::optional<HistoryTear> find_tear(const BeamGrid& grid, const PlacedPath& one, const PlacedPath& other) {
+    HistoryTear tear{{one, other}};
+    auto& [low, high] = tear.side;
+    const double whole = jump(low, high);
+    for (int i = 0; i < kTearBisections; ++i) {
+        std::optional<PlacedPath> middle = middle_path(grid, low, high.place);
+        if (!middle) {
+            return std::nullopt;
+            const Vec2 gap = 0.5 * (low.place + high.place);
+            low = last_before(grid, std::move(low), gap, kTearBisections - i - 1);
+            high = last_before(grid, std::move(high), gap, kTearBisections - i - 1);
+            return tear;
+        }
+        PlacedPath& nearer = jump(low, *middle) > jump(*middle, high) ? high : low;
+        nearer = *std::move(middle);
+        if (i + 1 == kTrials && jump(low, high) < kClosesBy * whole) return std::nullopt;
+    }
+    if (jump(low, high) < kStaysOpen * whole) return std::nullopt;
+    return tear;
+}
+
+bool is_beyond_tear(const Vec3& one, const Vec3& middle, const Vec3& other) {
+    return length(middle - 0.5 * (one + other)) > kWildest * length(other - one);
+}
+
+/// Of sides on which that is not known yet.
+void BeamGrid::find_tears(std::vector<SideHistory> sides, const Progress& progress) {
+    std::sort(sides.begin(), sides.end());
+    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+    std::erase_if(sides, [&](const SideHistory& side) { return tears_.contains(side); });
+    std::vector<std::optional<HistoryTear>> found(sides.size());
+    parallel_for(sides.size(), 4, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            progress.stop_if_cancelled();
+            const auto [a, b, path] = sides[i];
+            const LightPath& on_a = paths(a)[path];
+            found[i] = find_tear(*this, {place(a), on_a}, {place(b), *find_history(paths(b), on_a)});
+        }
+    });
+    for (std::size_t i = 0; i < sides.size(); ++i) tears_.emplace(sides[i], std::move(found[i]));
+}
+
+/// From triangle to triangle: where one goes in, it goes out.
+void BeamGrid::follow_tears(const Progress& progress) {
+    std::vector<SideHistory> torn;
+    for (const auto& [side, tear] : tears_)
+        if (tear) torn.push_back(side);
+    while (!torn.empty()) {
+        std::set<SideHistory> beside;
+        for (const auto& [a, b, path] : torn)
+            for (const Id triangle : sides_[edge_of(a, b)]) {
+                if (triangle == kNone) continue;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto& corner = triangles_[triangle].corner;
+                    const auto [from, to] = std::minmax(corner[k], corner[(k + 1) % 3]);
+                    const LightPath* same = find_history(paths(from), paths(a)[path]);
+                    if (same && find_history(paths(to), *same))
+                        beside.emplace(from, to, static_cast<Id>(same - paths(from).data()));
+                }
+            }
+        std::erase_if(beside, [&](const SideHistory& side) { return tears_.contains(side); });
+        find_tears({beside.begin(), beside.end()}, progress);
+        torn.clear();
+        for (const SideHistory& side : beside)
+            if (tears_.at(side)) torn.push_back(side);
+    }
+}
+
+/// Triangles in which one ends, or meets another or the end of its history: not two sides torn, and the
+/// history at every corner.
+std::vector<Id> BeamGrid::torn_oddly() const {
+    std::set<Id> odd;
+    for (const auto& [side, tear] : tears_) {
+        if (!tear) continue;
+        const auto& [a, b, path] = side;
+        for (const Id t : sides_.at(edge_of(a, b))) {
+            if (t == kNone) continue;
+            int torn = 0, there = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto [from, to] =
+                    std::minmax(triangles_[t].corner[k], triangles_[t].corner[(k + 1) % 3]);
+                const LightPath* same = find_history(paths(from), paths(a)[path]);
+                if (!same || !find_history(paths(to), *same)) continue;
+                ++there;
+                torn += tears_.at({from, to, static_cast<Id>(same - paths(from).data())}).has_value();
+            }
+            if (there != 3 || torn != 2) odd.insert(t);
+        }
+    }
+    return {odd.begin(), odd.end()};
+}
+
+}  // namespace trilens

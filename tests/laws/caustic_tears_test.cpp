@@ -1,0 +1,61 @@
+// Light over a mirror a part of which lies before another: it is as over two mirrors.
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "base/math/luminance.h"
+#include "shade/shade.h"
+#include "support/lit_world.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+const std::string kWall = "[-1.5,0.2,-1.5],[1.5,0.2,-1.5],[1.5,1.8,-1.5],[-1.5,1.8,-1.5]";
+const std::string kPane = "[-0.4,0.6,-0.5],[0.6,0.65,-0.45],[0.6,1.2,-0.6],[-0.4,1.15,-0.65]";
+
+std::string mirror(const std::string& name, const std::string& points, int quads) {
+    std::string counts = "4", indices = "0,1,2,3";
+    if (quads == 2) counts += ",4", indices += ",4,5,6,7";
+    return R"({"name": ")" + name +
+           R"(", "role": "optic", "material": "mirror", "subdivisionScheme": "none", "points": [)" + points +
+           R"(], "faceVertexCounts": [)" + counts + R"(], "faceVertexIndices": [)" + indices + "]}";
+}
+
+Receiver square_on_floor(double x, double z, double side) {
+    Receiver receiver = on_floor(x, z);
+    receiver.sides = {Vec3(side, 0, 0), Vec3(0, 0, -side)};
+    return receiver;
+}
+
+double flux(const LitWorld& lit) {
+    double sum = 0;
+    for (const auto& light : lit.lights) sum += luminance(light->beams().flux_on_objects());
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("light over a mirror that lies before itself is that over two mirrors", "[laws][law][caustics]") {
+    const LitWorld one(lit_world(mirror("both", kWall + "," + kPane, 2), kLamp));
+    const LitWorld two(lit_world(mirror("wall", kWall, 1) + ", " + mirror("pane", kPane, 1), kLamp));
+    for (const auto& light : one.lights) CHECK(light->losses().coarse == 0);
+    CHECK(flux(one) == Approx(flux(two)).epsilon(5e-4));
+
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> along(-2.5, 2.5);
+    double mean = 0, off = 0;
+    int lit = 0, wrong = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Receiver square = square_on_floor(along(random), along(random), 0.02);
+        const double by_one = luminance(irradiance(one.lights, square)),
+                     by_two = luminance(irradiance(two.lights, square));
+        if (by_two > 0) ++lit;
+        mean += by_two, off += std::fabs(by_one - by_two);
+        wrong += std::fabs(by_one - by_two) > 0.01;
+    }
+    CHECK(lit > 1000);
+    CHECK(off < 5e-3 * mean);
+    CHECK(wrong < 15);
+}
