@@ -19,7 +19,7 @@ constexpr int kMostHalvings = 5, kMostCuts = 4;
 constexpr double kFaintFlat = 0.05;
 /// Light so many times brighter than what is faint may fall beside its place as far as any; what is brighter
 /// less far by as much, but for so small a share.
-constexpr double kBright = 60, kLeastRoom = 1e-3;
+constexpr double kBright = 60, kLeastRoom = 1e-3, kMostRoom = 4;
 /// Beams are in pieces as if the tolerance were so many times what they may be off by, where that is less.
 constexpr double kPiecesOff = 4;
 /// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, and its
@@ -140,7 +140,7 @@ struct PlaneBeams::PartsMaker {
         const double brightness = strength * beam.corners.measure / (params.faint_light * area);
         if (brightness < 1) return INFINITY;
         return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength) *
-               std::clamp(kBright / brightness, kLeastRoom, 1.0);
+               std::clamp(kBright / brightness, kLeastRoom, kMostRoom);
     }
 
     /// How much its quarters' areas differ from a quarter, and its light from linear, as shares.

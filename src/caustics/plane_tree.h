@@ -132,6 +132,7 @@ void PlaneTree::for_each_near(const PlaneParallelogram& asked, const Use& use) c
             node = &nodes_[low ? child : child + 1];
         }
         if (!only && open_count == 0) return for_each_in(*node, use);
+        if (!only) several.reserve(64);
         only = node;
         for_each_in(*node, add);
     }
