@@ -25,7 +25,7 @@ constexpr const char* kFront = R"({ "version": 1, "film": { "width": 48, "height
                  { "name": "chrome", "metallicFactor": 1, "roughnessFactor": 0 } ],
   "meshes": [ )";
 
-std::string box(const char* name, const char* material, const Vec3& low, const Vec3& high,
+std::string optic_box(const char* name, const char* material, const Vec3& low, const Vec3& high,
                 const char* more = "") {
     std::string points;
     for (const double z : {low.z, high.z})
@@ -40,29 +40,29 @@ std::string box(const char* name, const char* material, const Vec3& low, const V
            more + "}";
 }
 
-std::string ball(const char* name, const char* material, const Vec3& c, double radius) {
+std::string optic_ball(const char* name, const char* material, const Vec3& c, double radius) {
     return std::string(R"({ "name": ")") + name + R"(", "role": "optic", "resolution": 8, "material": ")" +
            material + R"(", "primitive": { "type": "sphere", "center": [)" + std::to_string(c.x) + "," +
            std::to_string(c.y) + "," + std::to_string(c.z) + R"(], "radius": )" + std::to_string(radius) +
            "} }";
 }
 
-std::shared_ptr<const World> world_of(const std::string& meshes) {
+std::shared_ptr<const World> optics_world(const std::string& meshes) {
     return make_world(load_scene_text(kFront + meshes + "] }", SceneSource("test", ""), {}, {}), ignore);
 }
 
 /// A flat port; the same tilted, so that rays reflect totally in it; balls of glass and chrome; a chrome box
 /// that hides part of what lies behind a window; a smooth body of glass.
 std::vector<std::shared_ptr<const World>> worlds_of_several() {
-    const std::string port = box("port", "glass", {-2, -2, 3.2}, {2, 2, 3.5});
+    const std::string port = optic_box("port", "glass", {-2, -2, 3.2}, {2, 2, 3.5});
     return {
-        world_of(port + "," + box("water", "water", {-30, -30, -30}, {30, 30, 3.2})),
-        world_of(box("port", "glass", {-1, -0.8, -0.2}, {1, 0.8, 0.3},
+        optics_world(port + "," + optic_box("water", "water", {-30, -30, -30}, {30, 30, 3.2})),
+        optics_world(optic_box("port", "glass", {-1, -0.8, -0.2}, {1, 0.8, 0.3},
                      R"(, "transform": { "rotate": [0.1, 0.55, 0.1, 0.8] })")),
-        world_of(ball("clear", "glass", {0.7, -0.2, 0.5}, 0.7) + "," +
-                 ball("bright", "chrome", {-0.8, 0, -0.6}, 0.8)),
-        world_of(port + "," + box("screen", "chrome", {-0.6, -0.5, 1}, {0.2, 0.4, 1.4})),
-        world_of(box("pebble", "glass", {-1, -0.8, -1}, {1, 0.8, 0.6},
+        optics_world(optic_ball("clear", "glass", {0.7, -0.2, 0.5}, 0.7) + "," +
+                     optic_ball("bright", "chrome", {-0.8, 0, -0.6}, 0.8)),
+        optics_world(port + "," + optic_box("screen", "chrome", {-0.6, -0.5, 1}, {0.2, 0.4, 1.4})),
+        optics_world(optic_box("pebble", "glass", {-1, -0.8, -1}, {1, 0.8, 0.6},
                      R"(, "creaseIndices": [4,5], "creaseLengths": [2], "creaseSharpnesses": [1.5])")),
     };
 }
