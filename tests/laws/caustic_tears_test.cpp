@@ -59,3 +59,17 @@ TEST_CASE("light over a mirror that lies before itself is that over two mirrors"
     CHECK(off < 5e-3 * mean);
     CHECK(wrong < 15);
 }
+
+TEST_CASE("light that turns around in a ring more often than any corner's is found at the border",
+          "[laws][law][caustics]") {
+    const std::string
+        ring = R"({"name": "ring", "role": "optic", "material": "mirror", "resolution": 24,
+        "primitive": {"type": "cylinder", "center": [0, 0.2, 0], "axis": [0, 1, 0], "radius": 1, "height": 0.4}})",
+        sun =
+            R"({"type": "directional", "direction": [-0.85, -0.6, -0.35], "intensity": 2, "caustics": true})";
+    BeamGridParams fine;
+    fine.tolerance = 6e-5;
+    const LitWorld usual(lit_world(ring, sun)), much(lit_world(ring, sun), fine);
+    CHECK(usual.light().beams().histories.size() == 5);
+    CHECK(flux(usual) == Approx(flux(much)).epsilon(4e-4));
+}

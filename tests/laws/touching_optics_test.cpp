@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kWater = 1.33, kGlass = 1.5;
 
-std::string box(const std::string& name, const std::string& material, const Vec3& low, const Vec3& high) {
+std::string touching_box(const std::string& name, const std::string& material, const Vec3& low,
+                         const Vec3& high) {
     std::string points;
     for (int i = 0; i < 8; ++i) {
         char text[120];
@@ -51,8 +52,8 @@ void check_engines(const World& world) {
 TEST_CASE("from water through the glass that it fills there is no air between, whichever is named first",
           "[laws][law]") {
     const double third = 1.0 / 3;
-    const std::string water = box("water", "water", {-1, -1, -third}, {1, 1, third});
-    const std::string pane = box("pane", "glass", {-1, -1, -third - 0.1}, {1, 1, -third});
+    const std::string water = touching_box("water", "water", {-1, -1, -third}, {1, 1, third});
+    const std::string pane = touching_box("pane", "glass", {-1, -1, -third - 0.1}, {1, 1, -third});
     for (const std::string& meshes : {water + "," + pane, pane + "," + water}) {
         const auto world =
             world_from("aquarium", touching_room(meshes, "[0.03,0.02,0.11]", "[0.5,0.06,-0.4]"), 4);
@@ -91,19 +92,19 @@ TEST_CASE("from water through the glass that it fills there is no air between, w
 }
 
 TEST_CASE("a ball that lies on a slab, and glass on a mirror that is seen beside it", "[laws][law]") {
-    const std::string slab = box("slab", "glass", {-1, -0.5, -1}, {1, 0, 1});
+    const std::string slab = touching_box("slab", "glass", {-1, -0.5, -1}, {1, 0, 1});
     const std::string ball =
         R"({"name":"ball","role":"optic","material":"water","primitive":{"type":"sphere","center":[0,0.4,0],"radius":0.4}})";
     check_engines(*world_from("on_slab", touching_room(slab + "," + ball, "[0.6,0.9,2]", "[0,0.1,0]"), 6));
-    const std::string mirror = box("mirror", "mirror", {-1.5, -0.7, -1.5}, {1.5, -0.5, 1.5});
+    const std::string mirror = touching_box("mirror", "mirror", {-1.5, -0.7, -1.5}, {1.5, -0.5, 1.5});
     check_engines(
         *world_from("on_mirror", touching_room(mirror + "," + slab, "[0.6,0.9,2]", "[0,-0.3,0]"), 6));
 }
 
 TEST_CASE("a body in a body with one side in common is met there once", "[laws][law]") {
     // Equal media would pass; the one of higher priority is active behind the common side.
-    const std::string outer = box("outer", "glass", {-1, -1, -1}, {1, 1, 1});
-    std::string inner = box("inner", "water", {-0.5, -0.5, 0}, {0.5, 0.5, 1});
+    const std::string outer = touching_box("outer", "glass", {-1, -1, -1}, {1, 1, 1});
+    std::string inner = touching_box("inner", "water", {-0.5, -0.5, 0}, {0.5, 0.5, 1});
     inner.insert(1, R"("priority":1,)");
     for (const std::string& meshes : {outer + "," + inner, inner + "," + outer}) {
         const auto world = world_from("common_side", touching_room(meshes, "[0.1,0.2,3]", "[0,0,0]"), 2);

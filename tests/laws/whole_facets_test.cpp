@@ -14,7 +14,7 @@ using namespace trilens_test;
 
 namespace {
 
-std::unique_ptr<World> world_of(const std::string& json) {
+std::unique_ptr<World> whole_world_of(const std::string& json) {
     return make_world(load_scene_text(json, SceneSource("test", ""), {}, {}), ignore);
 }
 
@@ -36,7 +36,7 @@ std::string scene_of(const std::string& camera, int max_depth, const std::string
 
 const char* const kAbove = R"("yfov": 40, "lookAt": { "eye": [0, 1.2, 4.4], "at": [0, 0, 0] })";
 
-std::string ball(const std::string& name, const std::string& material, const Vec3& at, double radius) {
+std::string whole_ball(const std::string& name, const std::string& material, const Vec3& at, double radius) {
     std::ostringstream out;
     out << R"({ "name": ")" << name << R"(", "role": "optic", "material": ")" << material
         << R"(", "primitive": { "type": "sphere", "center": [)" << at.x << ", " << at.y << ", " << at.z
@@ -100,8 +100,8 @@ TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law]")
     for (const double radius : {0.05, 0.1, 0.2})
         for (int i = 0; i < 6; i += 2) {
             const Vec3 at(-1.1 + 0.37 * i, 0.5 - 0.13 * i, -1 - 0.1 * i);
-            const auto world =
-                world_of(scene_of(kAbove, 4, plane("glass", 0.5) + ", " + ball("ball", "gold", at, radius)));
+            const auto world = whole_world_of(
+                scene_of(kAbove, 4, plane("glass", 0.5) + ", " + whole_ball("ball", "gold", at, radius)));
             for (const double max_error : {0.0, 0.5}) {
                 const Bag bag = beside_truth(*world, frame_of(8, max_error));
                 INFO("radius " << radius << ", place " << i << ", error " << max_error);
@@ -114,10 +114,10 @@ TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law]")
 TEST_CASE("A flat mirror shows a ball whatever error is asked for", "[laws][law]") {
     for (const double radius : {0.04, 0.1})
         for (int i = 0; i < 4; ++i) {
-            const auto world =
-                world_of(scene_of(kAbove, 4,
-                                  plane("gold", -2) + ", " +
-                                      ball("ball", "gold", {-0.9 + 0.6 * i, 0.7 - 0.2 * i, -0.5}, radius)));
+            const auto world = whole_world_of(
+                scene_of(kAbove, 4,
+                         plane("gold", -2) + ", " +
+                             whole_ball("ball", "gold", {-0.9 + 0.6 * i, 0.7 - 0.2 * i, -0.5}, radius)));
             for (const double max_error : {0.0, 0.1, 0.5}) {
                 const Bag bag = beside_truth(*world, frame_of(4, max_error));
                 INFO("radius " << radius << ", place " << i << ", error " << max_error);
@@ -131,7 +131,8 @@ TEST_CASE("Paths that end at the first optic are true where the eye is in it", "
     const char* const inside = R"("yfov": 90, "lookAt": { "eye": [0.5, 0.2, 0.3], "at": [-1, 0, -1] })";
     for (const char* const material : {"diamond", "gold"})
         for (const int n : {8, 32}) {
-            const auto world = world_of(scene_of(inside, 0, ball("ball", material, {0, 0, 0}, 1)));
+            const auto world =
+                whole_world_of(scene_of(inside, 0, whole_ball("ball", material, {0, 0, 0}, 1)));
             const Bag bag = beside_truth(*world, frame_of(n));
             INFO(material << ", n " << n);
             CHECK(bag.other == 0);
@@ -140,9 +141,9 @@ TEST_CASE("Paths that end at the first optic are true where the eye is in it", "
 
 TEST_CASE("A path that carries no light shows nothing, projected or traced", "[laws][law]") {
     // Glass without Fresnel passes all light on: at its front nothing is reflected.
-    std::string json = scene_of(kAbove, 0, ball("ball", "glass", {0, 0, 0}, 1));
+    std::string json = scene_of(kAbove, 0, whole_ball("ball", "glass", {0, 0, 0}, 1));
     json.replace(json.find("\"maxDepth\": 0"), 13, "\"maxDepth\": 0, \"fresnel\": false");
-    const auto world = world_of(json);
+    const auto world = whole_world_of(json);
     for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth}) {
         PictureRequest request;
         request.frame.resolution = 8;
@@ -161,14 +162,14 @@ TEST_CASE("A path that carries no light shows nothing, projected or traced", "[l
 }
 
 TEST_CASE("The outline of an optic is that of its surface within the error asked for", "[laws][law]") {
-    const std::string balls =
-        ball("ball", "gold", {-0.4, 0, 0}, 0.9) + ", " + ball("small", "glass", {1, 0.4, -1}, 0.3);
+    const std::string balls = whole_ball("ball", "gold", {-0.4, 0, 0}, 0.9) + ", " +
+                              whole_ball("small", "glass", {1, 0.4, -1}, 0.3);
     for (const char* const camera :
          {kAbove,
           R"("type": "orthographic", "ymag": 1.6, "lookAt": { "eye": [0, 1.2, 4.4], "at": [0, 0, 0] })",
           R"("type": "fisheye", "fov": 120, "lookAt": { "eye": [0, 1.2, 3], "at": [0, 0, 0] })"})
         for (const int n : {1, 2, 4, 8}) {
-            const auto world = world_of(scene_of(camera, 2, balls));
+            const auto world = whole_world_of(scene_of(camera, 2, balls));
             INFO(camera << ", n " << n);
             const Outlines plain = outlines_of(*world, frame_of(n));
             // What is said to be lost to the outline: within a factor of four.
@@ -192,7 +193,7 @@ TEST_CASE("Where mirrors cross, a path starts on the one that comes first, not i
     "primitive": { "type": "sphere", "center": [-0.5, 0, 0], "radius": 0.9 } },
   { "name": "two", "role": "optic", "material": "gold",
     "primitive": { "type": "sphere", "center": [0.45, 0.2, 0.1], "radius": 0.8 } })";
-    const auto world = world_of(scene_of(kAbove, 32, balls));
+    const auto world = whole_world_of(scene_of(kAbove, 32, balls));
     const auto most_met = [&](Engine engine, int n) {
         PictureRequest request;
         request.frame = frame_of(n);

@@ -211,24 +211,23 @@ std::vector<BeamGrid::SideHistory> BeamGrid::uneven_histories(const Triangle& tr
 }
 
 /// Of triangles whose bases' middles have been traced. A history's tear is a border as that between two is.
-std::vector<char> BeamGrid::are_too_coarse(std::span<const Id> asked, const BeamGridParams& params,
-                                           const Progress& progress) {
+std::vector<char> BeamGrid::are_too_coarse(std::span<const Id> asked, const Progress& progress) {
     std::vector<char> coarse(asked.size());
     std::vector<std::vector<SideHistory>> uneven(asked.size());
     parallel_for(asked.size(), 256, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const Triangle& triangle = triangles_[asked[i]];
             uneven[i] = uneven_histories(triangle);
-            if (triangle.level < params.mixed_levels) coarse[i] = !uneven[i].empty() || is_mixed(triangle);
+            if (triangle.level < params_.mixed_levels) coarse[i] = !uneven[i].empty() || is_mixed(triangle);
         }
     });
     std::vector<SideHistory> doubtful;
     for (std::size_t i = 0; i < asked.size(); ++i)
-        if (triangles_[asked[i]].level >= params.mixed_levels)
+        if (triangles_[asked[i]].level >= params_.mixed_levels)
             doubtful.insert(doubtful.end(), uneven[i].begin(), uneven[i].end());
     find_tears(std::move(doubtful), progress);
     for (std::size_t i = 0; i < asked.size(); ++i)
-        if (triangles_[asked[i]].level >= params.mixed_levels)
+        if (triangles_[asked[i]].level >= params_.mixed_levels)
             coarse[i] = std::any_of(uneven[i].begin(), uneven[i].end(),
                                     [&](const SideHistory& one) { return !tears_.at(one); });
     return coarse;
@@ -249,36 +248,48 @@ std::vector<Id> BeamGrid::split_marked(std::span<const Id> triangles, std::span<
     return halves;
 }
 
+std::vector<Id> BeamGrid::split_where_room(std::span<const Id> triangles) {
+    std::vector<char> marked(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) marked[i] = has_room(triangles[i]);
+    return split_marked(triangles, marked);
+}
+
 /// Rounds until nothing is too coarse: each takes triangles of one level, and neighbours that they need.
-void BeamGrid::divide_from(std::vector<Id> asked, const BeamGridParams& params, const Progress& progress) {
-    const double rounds = params.most_levels + 1;
+void BeamGrid::divide_from(std::vector<Id> asked, const Progress& progress) {
+    const double rounds = params_.most_levels + 1;
     for (double round = 0; !asked.empty(); ++round) {
         for (const Id t : asked) middle_of(triangles_[t].corner[0], triangles_[t].corner[1]);
         trace_new_corners(progress.part(std::min(round / rounds, 1.0), round < rounds ? 1 / rounds : 0));
         if (faint_ == 0) faint_ = kFaintShare * mean_arriving();
-        std::vector<char> coarse = are_too_coarse(asked, params, progress);
+        std::vector<char> coarse = are_too_coarse(asked, progress);
         for (std::size_t i = 0; i < asked.size(); ++i)
-            if (coarse[i] && !has_room(asked[i], params)) ++coarse_, coarse[i] = false;
+            if (coarse[i] && !has_room(asked[i])) ++coarse_, coarse[i] = false;
         asked = split_marked(asked, coarse);
     }
     trace_new_corners(progress.part(1, 0));
 }
 
+void BeamGrid::divide_all(std::vector<Id> asked, const Progress& progress) {
+    for (Progress part = progress; !asked.empty(); part = progress.part(1, 0)) {
+        divide_from(asked, part);
+        follow_tears(part);
+        asked = split_where_room(torn_oddly());
+    }
+}
+
 void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
+    params_ = params;
     tolerance_ = params.tolerance * space_.size;
     start(params.first_cells);
-    coarse_ = 0;
-    std::vector<Id> asked(triangles_.size());
-    std::iota(asked.begin(), asked.end(), Id{0});
-    constexpr double kMost = 0.9;
-    for (Progress part = progress.part(0, kMost); !asked.empty(); part = progress.part(kMost, 0)) {
-        divide_from(asked, params, part);
-        follow_tears(part);
-        asked = torn_oddly();
-        std::vector<char> divided(asked.size());
-        for (std::size_t i = 0; i < asked.size(); ++i) divided[i] = has_room(asked[i], params);
-        asked = split_marked(asked, divided);
-    }
+    std::vector<Id> all(triangles_.size());
+    std::iota(all.begin(), all.end(), Id{0});
+    divide_all(all, progress);
+}
+
+bool BeamGrid::divide_more(std::span<const Id> triangles, const Progress& progress) {
+    const std::vector<Id> halves = split_where_room(triangles);
+    divide_all(halves, progress);
+    return !halves.empty();
 }
 
 }  // namespace trilens

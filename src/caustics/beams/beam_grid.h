@@ -48,6 +48,9 @@ class BeamGrid {
     /// Throws Interrupted soon after `progress` says so.
     void divide(const BeamGridParams& params, const Progress& progress);
 
+    /// Divides some of its triangles once, and what comes of them as far as it needs; false: none may be.
+    bool divide_more(std::span<const Id> triangles, const Progress& progress);
+
     const LightWindow& window() const { return window_; }
     const std::vector<Triangle>& triangles() const { return triangles_; }
     const std::vector<Node>& nodes() const { return nodes_; }
@@ -88,16 +91,17 @@ class BeamGrid {
     Id middle_of(Id a, Id b);
     bool is_mixed(const Triangle& triangle) const;
     std::vector<SideHistory> uneven_histories(const Triangle& triangle) const;
-    std::vector<char> are_too_coarse(std::span<const Id> triangles, const BeamGridParams& params,
-                                     const Progress& progress);
+    std::vector<char> are_too_coarse(std::span<const Id> triangles, const Progress& progress);
     void find_tears(std::vector<SideHistory> sides, const Progress& progress);
     void follow_tears(const Progress& progress);
     std::vector<Id> torn_oddly() const;
-    bool has_room(Id triangle, const BeamGridParams& params) const {
-        return triangles_[triangle].level < params.most_levels && triangles_.size() < params.most_triangles;
+    bool has_room(Id triangle) const {
+        return triangles_[triangle].level < params_.most_levels && triangles_.size() < params_.most_triangles;
     }
     std::vector<Id> split_marked(std::span<const Id> triangles, std::span<const char> marked);
-    void divide_from(std::vector<Id> asked, const BeamGridParams& params, const Progress& progress);
+    std::vector<Id> split_where_room(std::span<const Id> triangles);
+    void divide_from(std::vector<Id> asked, const Progress& progress);
+    void divide_all(std::vector<Id> asked, const Progress& progress);
     struct Corners;
     bool is_uneven(const Corners& corners, double tolerance) const;
     void link(Id triangle);
@@ -109,6 +113,7 @@ class BeamGrid {
     BeamSource source_;
     LightWindow window_;
     Id first_ = kNone;
+    BeamGridParams params_;
     std::vector<Vec2> places_;
     std::vector<LightPaths> paths_;  // of the first traced_ corners
     std::size_t traced_ = 0;

@@ -38,8 +38,7 @@ struct CutEnd {
 
 class BeamMaker {
   public:
-    BeamMaker(const BeamGrid& grid, Beams& beams)
-        : grid_(grid), beams_(beams), histories_(grid, beams.histories) {}
+    BeamMaker(BeamGrid& grid, Beams& beams) : grid_(grid), beams_(beams), histories_(grid, beams.histories) {}
     void make(const Progress& progress);
 
   private:
@@ -65,7 +64,7 @@ class BeamMaker {
     void add_node(Id node, const std::vector<Id>& histories);
     void set_spreads(std::size_t first_end, std::size_t first_beam);
 
-    const BeamGrid& grid_;
+    BeamGrid& grid_;
     Beams& beams_;
     GridHistories histories_;
     std::map<std::tuple<Id, Id, Id>, Id> end_;  // by corner inside, outside or kNone at a corner, history
@@ -346,6 +345,8 @@ void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
 void BeamMaker::make(const Progress& progress) {
     beams_.windows.push_back(grid_.window());
     histories_.find_borders(progress);
+    const Progress end = progress.part(1, 0);
+    while (grid_.divide_more(histories_.triangles_that_hide(), end)) histories_.find_borders(end);
     const std::size_t first_end = beams_.ends.size(), first_beam = beams_.beams.size();
     merge_ = {grid_.tolerance(), grid_.scene_size(), grid_.brightest(), kFaintShare * grid_.mean_arriving()};
     std::vector<Id> all(beams_.histories.size());
@@ -359,7 +360,7 @@ void BeamMaker::make(const Progress& progress) {
 
 }  // namespace
 
-void add_beams(const BeamGrid& grid, Beams& beams, const Progress& progress) {
+void add_beams(BeamGrid& grid, Beams& beams, const Progress& progress) {
     BeamMaker(grid, beams).make(progress);
 }
 

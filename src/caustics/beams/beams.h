@@ -79,10 +79,11 @@ inline BeamCorners corners_of(const Beams& beams, const LightBeam& beam) {
     return {{&beams.ends[beam.end[0]], &beams.ends[beam.end[1]], &beams.ends[beam.end[2]]}, beam.measure};
 }
 
-/// The beams of a divided window, added to `beams`, but those all of whose rays go on to another optic and
+/// The beams of a divided window, which is divided further where a history lies hidden between two others,
+/// added to `beams`, but those all of whose rays go on to another optic and
 /// meet no object before. Triangles on which a history ends are cut where it does, which is found along their
 /// sides to a 2^-12th of them for the brightest path, and to twice as much for half as bright a one. Throws
 /// Interrupted soon after `progress` says so.
-void add_beams(const BeamGrid& grid, Beams& beams, const Progress& progress = {});
+void add_beams(BeamGrid& grid, Beams& beams, const Progress& progress = {});
 
 }  // namespace trilens

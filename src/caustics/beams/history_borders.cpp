@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -11,6 +12,8 @@ namespace {
 
 /// Of a side, until the brightest path's border is found; a half as bright path's needs one less.
 constexpr int kBisections = 12;
+/// What lies behind a border is looked for where both carry this share of the brightest path.
+constexpr double kHiddenLight = 0.1;
 
 /// Borders of one side that bisection has not told apart yet.
 struct BorderSearch {
@@ -24,6 +27,22 @@ struct BorderSearch {
         for (const HistoryBorder* border : borders)
             strength = std::max(strength, strength_of(border->path.light));
         return !borders.empty() && std::ldexp(strength, kBisections - bisections) > brightest;
+    }
+
+    /// Whether before or beyond the border lies a history that neither end of the side has.
+    bool hides(const BeamGrid& grid) const {
+        const double least = kHiddenLight * grid.brightest();
+        const HistoryBorder& border = *borders.front();
+        if (strength_of(border.path.light) < least) return false;
+        const auto is_new = [&](const LightPath& path) {
+            return strength_of(path.light) >= least && !find_history(grid.paths(border.inside), path) &&
+                   !find_history(grid.paths(border.outside), path);
+        };
+        const std::array<Vec2, 2> places{low, high};
+        return std::any_of(places.begin(), places.end(), [&](const Vec2& place) {
+            const LightPaths found = grid.paths_at(place);
+            return std::any_of(found.paths.begin(), found.paths.end(), is_new);
+        });
     }
 
     /// What becomes of it at the middle: of those that are there, and those that are not.
@@ -62,32 +81,39 @@ void find_borders_on_side(const BeamGrid& grid, std::span<HistoryBorder* const> 
         progress.stop_if_cancelled();
         const BorderSearch search = std::move(searches.back());
         searches.pop_back();
-        for (BorderSearch& part : search.bisect(grid))
-            if (part.is_open(grid.brightest())) searches.push_back(std::move(part));
+        for (BorderSearch& part : search.bisect(grid)) {
+            if (part.is_open(grid.brightest()))
+                searches.push_back(std::move(part));
+            else if (!part.borders.empty())
+                part.borders.front()->hides = part.hides(grid);
+        }
     }
 }
 
-using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<VeilSurface>, int, Id, bool>;
+}  // namespace
 
-HistoryKey key_of(const LightHistory& history) {
+GridHistories::HistoryKey GridHistories::key_of(const LightHistory& history) {
     std::vector<std::uint64_t> steps;
     for (const Step& step : history.steps)
         steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
     return {std::move(steps), history.veils, history.colours, history.medium, history.has_start};
 }
 
-}  // namespace
+GridHistories::GridHistories(const BeamGrid& grid, std::vector<LightHistory>& all) : grid_(grid), all_(all) {
+    for (const LightHistory& one : all) number_.try_emplace(key_of(one), static_cast<Id>(number_.size()));
+    number_paths();
+}
 
-GridHistories::GridHistories(const BeamGrid& grid, std::vector<LightHistory>& all)
-    : grid_(grid), at_corner_(grid.corner_count()) {
-    std::map<HistoryKey, Id> number;
-    for (const LightHistory& one : all) number.try_emplace(key_of(one), static_cast<Id>(number.size()));
-    for (Id corner = 0; corner < at_corner_.size(); ++corner)
-        for (const LightPath& path : grid.paths(corner)) {
-            const auto [at, is_new] = number.try_emplace(key_of(path), static_cast<Id>(all.size()));
-            if (is_new) all.push_back(path);
-            at_corner_[corner].push_back(at->second);
+/// Of corners that are new.
+void GridHistories::number_paths() {
+    for (Id corner = static_cast<Id>(at_corner_.size()); corner < grid_.corner_count(); ++corner) {
+        std::vector<Id>& numbers = at_corner_.emplace_back();
+        for (const LightPath& path : grid_.paths(corner)) {
+            const auto [at, is_new] = number_.try_emplace(key_of(path), static_cast<Id>(all_.size()));
+            if (is_new) all_.push_back(path);
+            numbers.push_back(at->second);
         }
+    }
 }
 
 const LightPath* GridHistories::path_at(Id corner, Id history) const {
@@ -106,6 +132,8 @@ std::vector<Id> GridHistories::histories_of(const BeamGrid::Triangle& triangle) 
 }
 
 void GridHistories::find_borders(const Progress& progress) {
+    number_paths();
+    const std::size_t known = borders_.size();
     for (const BeamGrid::Triangle& triangle : grid_.triangles())
         for (const Id history : histories_of(triangle))
             for (std::size_t k = 0; k < 3; ++k) {
@@ -117,8 +145,8 @@ void GridHistories::find_borders(const Progress& progress) {
                 borders_.push_back({inside, outside, one ? one : other, {}, {}});
             }
     std::map<std::pair<Id, Id>, std::vector<HistoryBorder*>> by_side;
-    for (HistoryBorder& border : borders_)
-        by_side[std::minmax(border.inside, border.outside)].push_back(&border);
+    for (std::size_t i = known; i < borders_.size(); ++i)
+        by_side[std::minmax(borders_[i].inside, borders_[i].outside)].push_back(&borders_[i]);
     std::vector<const std::vector<HistoryBorder*>*> sides;
     for (const auto& [side, borders] : by_side) sides.push_back(&borders);
     LoopProgress done(progress, static_cast<double>(sides.size()));
@@ -141,6 +169,22 @@ void GridHistories::add_tears() {
                 {end[k], end[1 - k], path_at(end[k], history), tear->side[k].place, tear->side[k].path});
         }
     }
+}
+
+std::vector<Id> GridHistories::triangles_that_hide() const {
+    std::set<std::pair<Id, Id>> sides;
+    for (const HistoryBorder& border : borders_)
+        if (border.hides) sides.insert(std::minmax(border.inside, border.outside));
+    std::vector<Id> found;
+    for (Id t = 0; t < grid_.triangles().size(); ++t) {
+        const auto& corner = grid_.triangles()[t].corner;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (sides.contains(std::minmax(corner[k], corner[(k + 1) % 3]))) {
+                found.push_back(t);
+                break;
+            }
+    }
+    return found;
 }
 
 const HistoryBorder* GridHistories::border_between(Id inside, Id outside, Id history) const {

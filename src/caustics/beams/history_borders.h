@@ -1,6 +1,7 @@
 // Where histories end along the sides of a light's triangles: bisection by exact rays.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -17,17 +18,21 @@ struct HistoryBorder {
     const LightPath* like = nullptr;
     Vec2 place{0};
     LightPath path;
+    bool hides = false;  // beside it lies a history that neither corner has
 };
 
 /// The histories at the corners of a divided window, by numbers, and where they end between two of them.
 class GridHistories {
   public:
-    /// `all`: the histories that have numbers already; those that have none are added. The grid must live
-    /// longer.
+    /// `all`: the histories that have numbers already; those that have none are added. Both must live longer.
     GridHistories(const BeamGrid& grid, std::vector<LightHistory>& all);
 
-    /// Finds the borders along the sides of all triangles. Throws Interrupted soon after `progress` says so.
+    /// Finds the borders along the sides of all triangles, but those that are known, of the grid as it is
+    /// now. Throws Interrupted soon after `progress` says so.
     void find_borders(const Progress& progress);
+    /// The triangles on one of whose sides a history lies hidden between two others, brighter than a share of
+    /// the brightest path.
+    std::vector<Id> triangles_that_hide() const;
 
     /// Of a corner; null: it has not that history.
     const LightPath* path_at(Id corner, Id history) const;
@@ -46,10 +51,16 @@ class GridHistories {
   private:
     using Key = std::tuple<Id, Id, Id>;  // inside, outside, history
 
+    using HistoryKey = std::tuple<std::vector<std::uint64_t>, std::vector<VeilSurface>, int, Id, bool>;
+
+    static HistoryKey key_of(const LightHistory& history);
+    void number_paths();
     std::vector<Id> histories_of(const BeamGrid::Triangle& triangle) const;
     void add_tears();
 
     const BeamGrid& grid_;
+    std::vector<LightHistory>& all_;
+    std::map<HistoryKey, Id> number_;
     std::vector<std::vector<Id>> at_corner_;  // per corner and path: its history
     std::map<Key, std::size_t> border_;
     std::vector<HistoryBorder> borders_;
