@@ -37,9 +37,15 @@ struct Tally {
     double worst = 0;  // difference of weights
 };
 
-/// Projects what each pixel of a lattice sees and looks for the image that the pixel is.
-Tally compare(const World& world, int step) {
-    Tally tally;
+struct TracedPath {
+    Vec2 pixel{0};
+    std::vector<Step> steps;
+    Vec3 weight{0}, point{0};
+};
+
+/// The paths of the pixels of a lattice that carry light to the eye.
+std::vector<TracedPath> traced_paths(const World& world, int step) {
+    std::vector<TracedPath> paths;
     const Film& film = world.scene.film;
     const PictureRequest truth = traced();
     const std::unique_ptr<Viewer> viewer = make_viewer(world, truth.frame, truth.engine, Warn());
@@ -52,21 +58,32 @@ Tally compare(const World& world, int step) {
                 if (!end.hit.seen() || (end.colours != kAllColours && end.colours != 1)) continue;
                 const Vec3 weight = traced_weight(world, pixel, end);
                 if (weight == Vec3(0)) continue;
-                const std::span<const Step> of_end = pixel.steps_of(end);
-                const std::vector<Step> steps(of_end.begin(), of_end.end());
-                const Vec3 point = end.ray.origin + end.hit.t * end.ray.direction;
-                ++tally.paths;
-                const PointProjection all = project_points(world, {}, {&point, 1})[0];
-                for (const WorldImage& image : all.images) {
-                    if (image.steps != steps || length(image.pixel - Vec2(x + 0.5, y + 0.5)) > 1e-3) continue;
-                    ++tally.found;
-                    tally.several += steps.size() > 1;
-                    const Vec3 off = glm::abs(image.weight - weight);
-                    tally.worst = std::max({tally.worst, off.x, off.y, off.z});
-                    break;
-                }
+                const std::span<const Step> steps = pixel.steps_of(end);
+                paths.push_back({Vec2(x + 0.5, y + 0.5), {steps.begin(), steps.end()}, weight,
+                                 end.ray.origin + end.hit.t * end.ray.direction});
             }
         }
+    return paths;
+}
+
+/// Projects what each pixel of a lattice sees and looks for the image that the pixel is.
+Tally compare(const World& world, int step) {
+    const std::vector<TracedPath> paths = traced_paths(world, step);
+    std::vector<Vec3> points;
+    for (const TracedPath& path : paths) points.push_back(path.point);
+    const std::vector<PointProjection> all = project_points(world, {}, points);
+    Tally tally;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        ++tally.paths;
+        for (const WorldImage& image : all[i].images) {
+            if (image.steps != paths[i].steps || length(image.pixel - paths[i].pixel) > 1e-3) continue;
+            ++tally.found;
+            tally.several += image.steps.size() > 1;
+            const Vec3 off = glm::abs(image.weight - paths[i].weight);
+            tally.worst = std::max({tally.worst, off.x, off.y, off.z});
+            break;
+        }
+    }
     return tally;
 }
 
