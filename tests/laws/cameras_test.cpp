@@ -108,7 +108,7 @@ TEST_CASE("through every camera the projector, the thesis' engine and Embree see
 
 TEST_CASE("through every camera the picture comes to the exact surface's and the exact rays'",
           "[laws][law]") {
-    const auto coarse = camera_room(120, 90, 6), fine = camera_room(120, 90, 24);
+    const auto coarse = camera_room(120, 90, 4), fine = camera_room(120, 90, 16);
     for (std::size_t c = 0; c < coarse->scene.cameras.size(); ++c) {
         INFO(coarse->scene.cameras[c].name);
         if (coarse->scene.cameras[c].name == "around") continue;  // sees no optic
@@ -287,7 +287,7 @@ TEST_CASE("what project names, the exact rays see, through every camera", "[laws
 }
 
 TEST_CASE("what a picture shows in a mirror, project finds there, through every camera", "[laws][law]") {
-    const auto world = camera_room(160, 120, 16);
+    const auto world = camera_room(160, 120, 10);
     REQUIRE(world->scene.render.max_depth > 0);
     std::size_t asked = 0;
     for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
