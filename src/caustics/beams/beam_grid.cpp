@@ -19,6 +19,9 @@ constexpr double kFaintLight = 0.03;
 /// a fraction of that, and is divided where it is too much.
 constexpr double kMostBends = 4;
 
+/// What is spread until it is this share of what is faint may fall where it will.
+constexpr double kLetBe = 0.05;
+
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
 
@@ -153,8 +156,7 @@ struct BeamGrid::Corners {
 };
 
 /// Whether the middle's light falls too far from the middle between that of the base's ends, where it meets
-/// an object, or the triangle's halves are too unequally bright there. What is spread so widely that it is
-/// faint may fall where it will.
+/// an object, or the triangle's halves are too unequally bright there. What is spread widely is let be.
 bool BeamGrid::is_uneven(const Corners& corners, double tolerance) const {
     const Ray& ray = corners.middle.ray;
     if (!std::isfinite(corners.middle.object)) return false;
@@ -260,7 +262,7 @@ void BeamGrid::divide_from(std::vector<Id> asked, const Progress& progress) {
     for (double round = 0; !asked.empty(); ++round) {
         for (const Id t : asked) middle_of(triangles_[t].corner[0], triangles_[t].corner[1]);
         trace_new_corners(progress.part(std::min(round / rounds, 1.0), round < rounds ? 1 / rounds : 0));
-        if (faint_ == 0) faint_ = kFaintShare * mean_arriving();
+        if (faint_ == 0) faint_ = kLetBe * kFaintShare * mean_arriving();
         std::vector<char> coarse = are_too_coarse(asked, progress);
         for (std::size_t i = 0; i < asked.size(); ++i)
             if (coarse[i] && !has_room(asked[i])) ++coarse_, coarse[i] = false;

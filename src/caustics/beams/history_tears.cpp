@@ -35,17 +35,6 @@ std::optional<PlacedPath> middle_path(const BeamGrid& grid, const PlacedPath& on
     return middle;
 }
 
-/// The last of it on the way to where it is not.
-PlacedPath last_before(const BeamGrid& grid, PlacedPath inside, Vec2 outside, int bisections) {
-    for (int i = 0; i < bisections; ++i) {
-        if (auto middle = middle_path(grid, inside, outside))
-            inside = *std::move(middle);
-        else
-            outside = 0.5 * (inside.place + outside);
-    }
-    return inside;
-}
-
 }  // namespace
 
 std::optional<HistoryTear> find_tear(const BeamGrid& grid, const PlacedPath& one, const PlacedPath& other) {
@@ -54,13 +43,7 @@ std::optional<HistoryTear> find_tear(const BeamGrid& grid, const PlacedPath& one
     const double whole = jump(low, high);
     for (int i = 0; i < kTearBisections; ++i) {
         std::optional<PlacedPath> middle = middle_path(grid, low, high.place);
-        if (!middle) {
-            return std::nullopt;
-            const Vec2 gap = 0.5 * (low.place + high.place);
-            low = last_before(grid, std::move(low), gap, kTearBisections - i - 1);
-            high = last_before(grid, std::move(high), gap, kTearBisections - i - 1);
-            return tear;
-        }
+        if (!middle) return std::nullopt;
         PlacedPath& nearer = jump(low, *middle) > jump(*middle, high) ? high : low;
         nearer = *std::move(middle);
         if (i + 1 == kTrials && jump(low, high) < kClosesBy * whole) return std::nullopt;

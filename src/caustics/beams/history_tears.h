@@ -27,8 +27,9 @@ struct HistoryTear {
     std::array<PlacedPath, 2> side;
 };
 
-/// The tear between two paths of one history; none: it is whole there, or bends so slowly that it may be. It
-/// is told by the last optic's points, which come together as their places do where the history is whole.
+/// The tear between two paths of one history; none: it is whole there, or closes so steadily that it may be,
+/// or is not there in a middle. It is told by the last optic's points, which come together as their places do
+/// where the history is whole.
 std::optional<HistoryTear> find_tear(const BeamGrid& grid, const PlacedPath& one, const PlacedPath& other);
 
 /// Whether the middle between two rays that leave an optic at `one` and `other` is beyond a tear, told by
