@@ -108,7 +108,7 @@ constexpr SurfaceId kPiece{4, 0, std::nullopt};
 }  // namespace
 
 TEST_CASE("a patch holds the pixels that links reach, none where they stand in one line",
-          "[measure][displacement][oracle][law]") {
+          "[measure][displacement][oracle][law][many]") {
     std::mt19937_64 random(14);
     std::size_t patches = 0, none = 0;
     for (int trial = 0; trial < 60; ++trial) {
