@@ -13,10 +13,10 @@ namespace trilens {
 namespace {
 
 /// Halvings of a beam's sides where its quadratic is wrong, and where there is none.
-constexpr int kMostHalvings = 5, kMostCuts = 5;
+constexpr int kMostHalvings = 5, kMostCuts = 4;
 /// Beams that the plane cuts off are left flat, which loses some of their light, where it is this share of
 /// what is faint.
-constexpr double kFaintFlat = 0.005;
+constexpr double kFaintFlat = 0.002;
 /// Light so many times brighter than what is faint may fall beside its place as far as any; what is brighter
 /// less far by as much, but for so small a share.
 constexpr double kBright = 60, kLeastRoom = 1e-3, kMostRoom = 4;
