@@ -193,7 +193,7 @@ bool BeamGrid::is_mixed(const Triangle& triangle) const {
     return differ(a, b) || differ(a, middles_.at(edge_of(a, b))) || differ(a, c);
 }
 
-/// Those at both ends of its base that are not in its middle, or not where they should be.
+/// Those at both ends of its base and in its middle that are not where they should be there.
 std::vector<BeamGrid::SideHistory> BeamGrid::uneven_histories(const Triangle& triangle) const {
     const Id a = std::min(triangle.corner[0], triangle.corner[1]),
              b = std::max(triangle.corner[0], triangle.corner[1]);
