@@ -15,8 +15,9 @@ namespace {
 /// are as the others need them.
 constexpr double kFaintLight = 0.03;
 
-/// A triangle's base may be bent by so many tolerances: what falls is as a quadratic has it, which is off by
-/// a fraction of that, and is divided where it is too much.
+/// A triangle's base may be bent by so many tolerances where all of its corners have the same histories: what
+/// falls is as a quadratic has it, which is off by a fraction of that, and is divided where it is too much. A
+/// border is straight, and as near to its place as triangles are small.
 constexpr double kMostBends = 4;
 
 /// What is spread until it is this share of what is faint may fall where it will.
@@ -172,7 +173,7 @@ bool BeamGrid::is_uneven(const Corners& corners, double tolerance) const {
     if (!at_a || !at_b) return true;
     // Paths that carry less may be off by more.
     const double strength = strength_of(corners.middle.light);
-    const double room = kMostBends * tolerance * brightest_ / strength;
+    const double room = tolerance * brightest_ / strength;
     const bool is_bent = length(0.5 * (*at_a + *at_b) - there) > room;
     const std::optional<Vec3> at_c = corners.c ? fallen(*corners.c) : std::nullopt;
     if (!at_c) return is_bent;
@@ -201,12 +202,15 @@ std::vector<BeamGrid::SideHistory> BeamGrid::uneven_histories(const Triangle& tr
           &at_c = paths(triangle.corner[2]);
     const double least = kFaintLight * brightest_;
     const double measure = window_.measure(place(a), place(b), place(triangle.corner[2]));
+    const bool is_whole = has_all(paths(a), at_middle, 0) && has_all(at_middle, paths(b), 0) &&
+                          has_all(paths(b), at_c, 0) && has_all(at_c, paths(a), 0);
+    const double tolerance = (is_whole ? kMostBends : 1) * tolerance_;
     std::vector<SideHistory> uneven;
     for (Id i = 0; i < paths(a).size(); ++i) {
         const LightPath& on_a = paths(a)[i];
         const LightPath *on_b = find_history(paths(b), on_a), *middle = find_history(at_middle, on_a);
         if (!on_b || !middle || strength_of(middle->light) < least) continue;
-        if (is_uneven({on_a, *on_b, *middle, find_history(at_c, on_a), measure}, tolerance_))
+        if (is_uneven({on_a, *on_b, *middle, find_history(at_c, on_a), measure}, tolerance))
             uneven.emplace_back(a, b, i);
     }
     return uneven;
