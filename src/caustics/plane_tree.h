@@ -115,7 +115,7 @@ void PlaneTree::for_each_near(const PlaneParallelogram& asked, const Use& use) c
     std::array<std::uint32_t, kDeepest + 1> open;
     std::size_t open_count = 0;
     open[open_count++] = 0;
-    const Node* only = nullptr;
+    bool is_first = true;
     std::vector<std::uint32_t> several;  // of more than one leaf, some more than once
     const auto for_each_in = [&](const Node& leaf, const auto& use_shape) {
         for (std::uint32_t i = leaf.first; i < leaf.end; ++i)
@@ -131,9 +131,9 @@ void PlaneTree::for_each_near(const PlaneParallelogram& asked, const Use& use) c
             if (low && high) open[open_count++] = child + 1;
             node = &nodes_[low ? child : child + 1];
         }
-        if (!only && open_count == 0) return for_each_in(*node, use);
-        if (!only) several.reserve(64);
-        only = node;
+        if (is_first && open_count == 0) return for_each_in(*node, use);
+        if (is_first) several.reserve(64);
+        is_first = false;
         for_each_in(*node, add);
     }
     std::sort(several.begin(), several.end());

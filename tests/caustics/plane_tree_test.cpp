@@ -1,27 +1,30 @@
 // Shapes in a plane are found as by asking each.
 #include "caustics/plane_tree.h"
 
-#include <random>
+#include <cmath>
+#include <vector>
 
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;
+using namespace trilens_test;
 
 namespace {
 
-class RandomPlane {
-  public:
-    explicit RandomPlane(unsigned seed) : random_(seed) {}
-    double between(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(random_);
+struct RandomPlane {
+    Draw draw;
+
+    double between(double low, double high) { return draw.uniform(low, high); }
+    Vec2 in_square(double half) {
+        const Vec3 at = draw.in_cube(half);
+        return {at.x, at.y};
     }
-    double log_uniform(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-    Vec2 in_square(double half) { return {between(-half, half), between(-half, half)}; }
 
     /// From specks to what covers all, and some needles and points.
     std::array<Vec2, 3> triangle() {
         const Vec2 at = in_square(1.3);
-        const double size = log_uniform(1e-4, 5);
+        const double size = draw.log_uniform(1e-4, 5);
         std::array<Vec2, 3> corner{at, at + size * in_square(1), at + size * in_square(1)};
         const double kind = between(0, 1);
         if (kind < 0.2) corner[2] = corner[1] + 1e-3 * (corner[2] - corner[1]);
@@ -29,14 +32,12 @@ class RandomPlane {
         return corner;
     }
     PlaneParallelogram parallelogram() {
-        const double size = log_uniform(1e-4, 3);
-        const bool is_point = between(0, 1) < 0.2;
-        return {in_square(1.5),
-                is_point ? Mat2(0) : Mat2(size * in_square(1), size * log_uniform(1e-3, 1) * in_square(1))};
+        const double size = draw.log_uniform(1e-4, 3);
+        const Vec2 middle = in_square(1.5), wide = size * in_square(1);
+        const double share = draw.log_uniform(1e-3, 1);
+        const Vec2 high = size * share * in_square(1);
+        return {middle, between(0, 1) < 0.2 ? Mat2(0) : Mat2(wide, high)};
     }
-
-  private:
-    std::mt19937 random_;
 };
 
 std::vector<std::uint32_t> found_in(const PlaneTree& tree, const PlaneParallelogram& asked) {
@@ -57,7 +58,7 @@ std::vector<std::uint32_t> found_one_by_one(const std::vector<PlaneBounds>& shap
 
 TEST_CASE("plane tree: finds the shapes that asking each one finds, once and in order", "[caustics][law]") {
     const std::size_t count = GENERATE(0, 1, 7, 40, 3000);
-    RandomPlane random(static_cast<unsigned>(count));
+    RandomPlane random{Draw(count)};
     std::vector<PlaneBounds> shapes;
     for (std::size_t i = 0; i < count; ++i) shapes.push_back(PlaneBounds::of(random.triangle()));
     const PlaneTree tree(shapes, {{-1, -0.5}, {1, 0.5}});
@@ -88,7 +89,7 @@ TEST_CASE("plane tree: shapes that only touch the lines it is divided along are 
 }
 
 TEST_CASE("plane bounds: all of a triangle meets them, and little beside it does", "[caustics]") {
-    RandomPlane random(5);
+    RandomPlane random{Draw(5)};
     int beside = 0, met = 0;
     for (int i = 0; i < 3000; ++i) {
         const std::array<Vec2, 3> corner = random.triangle();

@@ -206,7 +206,7 @@ TEST_CASE("an error that is asked for is kept before every camera, and most is p
         REQUIRE(found->summary);
         return std::tuple(*found->summary, found->pixels, drawn.statistics);
     };
-    const auto world = shipped_world("cameras", 6, 320, 240);
+    const auto world = shipped_world("cameras", 8, 320, 240);
     std::size_t asked = 0;
     for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
         const std::string& name = world->scene.cameras[c].name;

@@ -177,17 +177,16 @@ bool BeamGrid::is_uneven(const Corners& corners, double tolerance) const {
     const bool is_bent = length(0.5 * (*at_a + *at_b) - there) > room;
     const std::optional<Vec3> at_c = corners.c ? fallen(*corners.c) : std::nullopt;
     if (!at_c) return is_bent;
-    const double first = std::fabs(triple(*at_a - there, *at_c - there, ray.direction)),
-                 second = std::fabs(triple(*at_c - there, *at_b - there, ray.direction));
-    if (strength * corners.measure < faint_ * 0.5 * (first + second)) return false;
-    return is_bent ||
-           (first + second > room * room && std::fabs(first - second) > kUnevenHalves * (first + second));
+    const double first = triple(*at_a - there, *at_c - there, ray.direction),
+                 second = triple(*at_c - there, *at_b - there, ray.direction);
+    const double both = std::fabs(first) + std::fabs(second);
+    if (strength * corners.measure < faint_ * 0.5 * both) return false;
+    return is_bent || (both > room * room && std::fabs(first - second) > kUnevenHalves * both);
 }
 
-/// Whether its corners have different histories of any that carry something.
-bool BeamGrid::is_mixed(const Triangle& triangle) const {
+/// Whether its corners have different histories of any that carry so much.
+bool BeamGrid::is_mixed(const Triangle& triangle, double least) const {
     const auto& [a, b, c] = triangle.corner;
-    const double least = kFaintLight * brightest_;
     const auto differ = [&](Id one, Id other) {
         return !has_all(paths(one), paths(other), least) || !has_all(paths(other), paths(one), least);
     };
@@ -202,9 +201,7 @@ std::vector<BeamGrid::SideHistory> BeamGrid::uneven_histories(const Triangle& tr
           &at_c = paths(triangle.corner[2]);
     const double least = kFaintLight * brightest_;
     const double measure = window_.measure(place(a), place(b), place(triangle.corner[2]));
-    const bool is_whole = has_all(paths(a), at_middle, 0) && has_all(at_middle, paths(b), 0) &&
-                          has_all(paths(b), at_c, 0) && has_all(at_c, paths(a), 0);
-    const double tolerance = (is_whole ? kMostBends : 1) * tolerance_;
+    const double tolerance = (is_mixed(triangle, 0) ? 1 : kMostBends) * tolerance_;
     std::vector<SideHistory> uneven;
     for (Id i = 0; i < paths(a).size(); ++i) {
         const LightPath& on_a = paths(a)[i];
@@ -224,18 +221,16 @@ std::vector<char> BeamGrid::are_too_coarse(std::span<const Id> asked, const Prog
         for (std::size_t i = from; i < to; ++i) {
             const Triangle& triangle = triangles_[asked[i]];
             uneven[i] = uneven_histories(triangle);
-            if (triangle.level < params_.mixed_levels) coarse[i] = !uneven[i].empty() || is_mixed(triangle);
+            if (triangle.level >= params_.mixed_levels) continue;
+            coarse[i] = !uneven[i].empty() || is_mixed(triangle, kFaintLight * brightest_);
+            uneven[i].clear();
         }
     });
     std::vector<SideHistory> doubtful;
-    for (std::size_t i = 0; i < asked.size(); ++i)
-        if (triangles_[asked[i]].level >= params_.mixed_levels)
-            doubtful.insert(doubtful.end(), uneven[i].begin(), uneven[i].end());
+    for (const auto& histories : uneven) doubtful.insert(doubtful.end(), histories.begin(), histories.end());
     find_tears(std::move(doubtful), progress);
     for (std::size_t i = 0; i < asked.size(); ++i)
-        if (triangles_[asked[i]].level >= params_.mixed_levels)
-            coarse[i] = std::any_of(uneven[i].begin(), uneven[i].end(),
-                                    [&](const SideHistory& one) { return !tears_.at(one); });
+        for (const SideHistory& one : uneven[i]) coarse[i] |= !tears_.at(one);
     return coarse;
 }
 

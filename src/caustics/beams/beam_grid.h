@@ -89,7 +89,8 @@ class BeamGrid {
     void start(int cells);
     void trace_new_corners(const Progress& progress);
     Id middle_of(Id a, Id b);
-    bool is_mixed(const Triangle& triangle) const;
+    bool is_mixed(const Triangle& triangle, double least) const;
+    std::vector<SideHistory> sides_with(const LightPath& like, Id triangle) const;
     std::vector<SideHistory> uneven_histories(const Triangle& triangle) const;
     std::vector<char> are_too_coarse(std::span<const Id> triangles, const Progress& progress);
     void find_tears(std::vector<SideHistory> sides, const Progress& progress);

@@ -73,6 +73,19 @@ void BeamGrid::find_tears(std::vector<SideHistory> sides, const Progress& progre
     for (std::size_t i = 0; i < sides.size(); ++i) tears_.emplace(sides[i], std::move(found[i]));
 }
 
+/// The triangle's sides at both of whose ends the history is.
+std::vector<BeamGrid::SideHistory> BeamGrid::sides_with(const LightPath& like, Id triangle) const {
+    std::vector<SideHistory> sides;
+    const auto& corner = triangles_[triangle].corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto [from, to] = std::minmax(corner[k], corner[(k + 1) % 3]);
+        const LightPath* same = find_history(paths(from), like);
+        if (same && find_history(paths(to), like))
+            sides.emplace_back(from, to, static_cast<Id>(same - paths(from).data()));
+    }
+    return sides;
+}
+
 /// From triangle to triangle: where one goes in, it goes out.
 void BeamGrid::follow_tears(const Progress& progress) {
     std::vector<SideHistory> torn;
@@ -81,16 +94,9 @@ void BeamGrid::follow_tears(const Progress& progress) {
     while (!torn.empty()) {
         std::set<SideHistory> beside;
         for (const auto& [a, b, path] : torn)
-            for (const Id triangle : sides_[edge_of(a, b)]) {
-                if (triangle == kNone) continue;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const auto& corner = triangles_[triangle].corner;
-                    const auto [from, to] = std::minmax(corner[k], corner[(k + 1) % 3]);
-                    const LightPath* same = find_history(paths(from), paths(a)[path]);
-                    if (same && find_history(paths(to), *same))
-                        beside.emplace(from, to, static_cast<Id>(same - paths(from).data()));
-                }
-            }
+            for (const Id triangle : sides_.at(edge_of(a, b)))
+                if (triangle != kNone)
+                    for (const SideHistory& side : sides_with(paths(a)[path], triangle)) beside.insert(side);
         std::erase_if(beside, [&](const SideHistory& side) { return tears_.contains(side); });
         find_tears({beside.begin(), beside.end()}, progress);
         torn.clear();
@@ -108,16 +114,11 @@ std::vector<Id> BeamGrid::torn_oddly() const {
         const auto& [a, b, path] = side;
         for (const Id t : sides_.at(edge_of(a, b))) {
             if (t == kNone) continue;
-            int torn = 0, there = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto [from, to] =
-                    std::minmax(triangles_[t].corner[k], triangles_[t].corner[(k + 1) % 3]);
-                const LightPath* same = find_history(paths(from), paths(a)[path]);
-                if (!same || !find_history(paths(to), *same)) continue;
-                ++there;
-                torn += tears_.at({from, to, static_cast<Id>(same - paths(from).data())}).has_value();
-            }
-            if (there != 3 || torn != 2) odd.insert(t);
+            const std::vector<SideHistory> sides = sides_with(paths(a)[path], t);
+            const auto torn = std::count_if(sides.begin(), sides.end(), [&](const SideHistory& one) {
+                return tears_.at(one).has_value();
+            });
+            if (sides.size() != 3 || torn != 2) odd.insert(t);
         }
     }
     return {odd.begin(), odd.end()};
