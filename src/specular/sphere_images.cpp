@@ -127,15 +127,20 @@ HWY_INLINE Vector far_start(const EyeAndPoint& pair, const Edges& of_eye, const 
     return either(hn::Gt(dot(middle, between), number(0)), opposite(middle), middle);
 }
 
-void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
-                     SphereZeros& result) {
+/// From `first` on, seen from the sphere's centre, in radii.
+HWY_INLINE EyeAndPoint pair_at(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                               std::size_t first) {
     const Number by_radius = number(1 / sphere.radius);
     const Vector center = vector(sphere.center);
-    const Vector from_center = times(by_radius, minus(vector(eye), center));
+    const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
+    return {times(by_radius, minus(vector(eye), center)), times(by_radius, minus(point, center))};
+}
+
+void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                     SphereZeros& result) {
     result.lit = result.shaded = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
-        const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
-        const EyeAndPoint pair{from_center, times(by_radius, minus(point, center))};
+        const EyeAndPoint pair = pair_at(sphere, eye, points, first);
         const Ways ways = ways_of(pair);
         const Edges of_eye = edges_of(pair.eye, pair.point), of_point = edges_of(pair.point, pair.eye);
         const Vector near = zero_near(pair, near_start(pair, of_eye, of_point));
@@ -173,13 +178,9 @@ HWY_INLINE Vector nearer_in_front(const EyeAndPoint& pair, const Vector& across,
 
 void find_front_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
                            FrontZeros& result) {
-    const Number by_radius = number(1 / sphere.radius);
-    const Vector center = vector(sphere.center);
-    const Vector from_center = times(by_radius, minus(vector(eye), center));
     result.one = result.none = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
-        const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
-        const EyeAndPoint pair{from_center, times(by_radius, minus(point, center))};
+        const EyeAndPoint pair = pair_at(sphere, eye, points, first);
         const auto [length, nearest] = way_of(pair);
         const Number margin = hn::Mul(number(kFrontClearance), hn::Add(number(1), length));
         result.one |= bits_of(hn::Gt(nearest, hn::Add(number(1), margin))) << first;
