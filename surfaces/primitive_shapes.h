@@ -22,17 +22,17 @@ inline double difference_of_products(double a, double b, double c, double d) {
 
 /// The real t with c[0] + 2 c[1] t + c[2] t^2 = 0, ascending; infinite where there are fewer.
 inline std::array<double, 2> quadric_roots(const std::array<double, 3>& c) {
-    constexpr double kNever = HUGE_VAL;
+    constexpr double kNoRoot = HUGE_VAL;
     // Most rays miss by more than the four roundings of the plain difference: they need no exact one.
     const double square = c[1] * c[1], product = c[0] * c[2];
-    if (square - product < -1e-15 * (square + std::fabs(product))) return {kNever, kNever};
+    if (square - product < -1e-15 * (square + std::fabs(product))) return {kNoRoot, kNoRoot};
     const double discriminant = difference_of_products(c[1], c[1], c[0], c[2]);
-    if (!(discriminant >= 0)) return {kNever, kNever};
+    if (!(discriminant >= 0)) return {kNoRoot, kNoRoot};
 
     // Both roots from the sum that does not cancel: one is q / c2, their product c0 / c2.
     const double q = -(c[1] + std::copysign(std::sqrt(discriminant), c[1]));
-    if (q == 0) return {c[2] != 0 ? 0 : kNever, kNever};
-    const double near_zero = c[0] / q, other = c[2] != 0 ? q / c[2] : kNever;
+    if (q == 0) return {c[2] != 0 ? 0 : kNoRoot, kNoRoot};
+    const double near_zero = c[0] / q, other = c[2] != 0 ? q / c[2] : kNoRoot;
     return {std::min(near_zero, other), std::max(near_zero, other)};
 }
 

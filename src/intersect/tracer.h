@@ -58,7 +58,7 @@ inline double area_from_origin(const Vec2& a, const Vec2& b) {
 /// root. What rounding does to areas is far below the room that is left for it; where it may have turned the
 /// triangle's own, the triangle is as good as its edge.
 inline bool is_surely_beyond(const PlaneTriangle& p, double distance) {
-    constexpr double kRelative = 1 + 1e-6, kRounding = 1e-13;
+    constexpr double kRelative = 1 + 1e-6, kEdgeRounding = 1e-13;
     const std::array<double, 3> areas{area_from_origin(p[0], p[1]), area_from_origin(p[1], p[2]),
                                       area_from_origin(p[2], p[0])};
     const double sum = areas[0] + areas[1] + areas[2];
@@ -66,7 +66,7 @@ inline bool is_surely_beyond(const PlaneTriangle& p, double distance) {
         const Vec2 &a = p[k], &b = p[(k + 1) % 3];
         const double outside = sum > 0 ? -areas[k] : areas[k];
         const double edge = std::fabs(b.x - a.x) + std::fabs(b.y - a.y);  // or more
-        if (outside > kRelative * distance * edge + kRounding * (dot(a, a) + dot(b, b))) return true;
+        if (outside > kRelative * distance * edge + kEdgeRounding * (dot(a, a) + dot(b, b))) return true;
     }
     return false;
 }

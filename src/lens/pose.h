@@ -58,10 +58,10 @@ inline LensPose tilted(const Vec3& degrees) {
 
 /// Whether it moves nothing by more than rounding does, of lengths up to `size`.
 inline bool is_identity(const LensPose& pose, double size = 1) {
-    constexpr double kRounding = 1e-12;
+    constexpr double kTurnRounding = 1e-12;
     double most = length(pose.shift) / (size > 0 ? size : 1);
     for (int k = 0; k < 3; ++k) most = std::max(most, length(pose.turn[k] - Mat3(1)[k]));
-    return most < kRounding;
+    return most < kTurnRounding;
 }
 
 }  // namespace trilens

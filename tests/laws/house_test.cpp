@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -98,4 +99,36 @@ TEST_CASE("few headers are installed, each standing alone, and none of the machi
         }
     }
     CHECK(own <= 22);
+}
+
+/// The constants (kName = ...) that a declaration's line names.
+std::vector<std::string> constants_of(const std::string& line) {
+    static const std::regex named(R"(\b(k[A-Z]\w*)(\[[^\]]*\])? ?[={])");
+    std::vector<std::string> names;
+    for (std::sregex_iterator match(line.begin(), line.end(), named), end; match != end; ++match)
+        names.push_back((*match)[1]);
+    return names;
+}
+
+// One unit of a unity build has many files, in an order that options change: there a function's constant in a
+// header would shadow a file's, which Clang warns of.
+TEST_CASE("a constant inside of a header's function has no name that a file's constant has", "[laws][law]") {
+    std::map<std::string, std::string> of_functions, of_files;  // where it is
+    for (const SourceFile& file : files_below(kProduct)) {
+        std::ifstream in(fs::path(trilens_test::source_dir()) / file.name);
+        for (std::string line; std::getline(in, line);) {
+            const bool is_of_file = line.starts_with("constexpr ") || line.starts_with("inline constexpr ");
+            const bool is_of_function =
+                file.name.ends_with(".h") && std::regex_search(line, std::regex("^ +constexpr "));
+            if (is_of_file || is_of_function)
+                for (const std::string& name : constants_of(line))
+                    (is_of_file ? of_files : of_functions)[name] = file.name;
+        }
+    }
+    CHECK(of_files.size() > 300);
+    CHECK(of_functions.size() > 20);
+    for (const auto& [name, file] : of_functions) {
+        INFO(name << " of " << file);
+        CHECK(!of_files.contains(name));
+    }
 }

@@ -23,8 +23,8 @@ namespace trilens {
 /// which it has after them, >= 0 (mathematics, section 6); within 1/50 and 50, for a fold of the directions,
 /// or a focus of the bundle, would make corner rays endless or nothing.
 inline double ray_scale_of(double before, double after) {
-    constexpr double kMostScale = 50;
-    return after > 0 ? std::clamp(std::cbrt(before / after), 1 / kMostScale, kMostScale) : kMostScale;
+    constexpr double kMostRayScale = 50;
+    return after > 0 ? std::clamp(std::cbrt(before / after), 1 / kMostRayScale, kMostRayScale) : kMostRayScale;
 }
 
 // Traces the exact paths of the camera ray through one point of a facet (a probe).

@@ -239,18 +239,18 @@ HWY_NOINLINE std::size_t list_pairs(const TileBoxes& tile, const EdgeBounds& all
         const Mask near = (boxes.u + boxes.half_u >= u_low) & (boxes.u - boxes.half_u <= u_high) &
                           (boxes.v + boxes.half_v >= v_low) & (boxes.v - boxes.half_v <= v_high);
         const std::uint32_t vectors = bits(near);
-        constexpr std::uint32_t kStep = kLanes;
+        constexpr std::uint32_t kLaneStep = kLanes;
         if (triangles < std::popcount(vectors)) {
             for (Each lane(lanes); lane; ++lane)
-                count += list_lanes<kStep>(without(near, one_outside_boxes(stored, *lane, boxes)),
-                                           first * kStep + *lane, pairs + count);
+                count += list_lanes<kLaneStep>(without(near, one_outside_boxes(stored, *lane, boxes)),
+                                               first * kLaneStep + *lane, pairs + count);
             continue;
         }
         for (Each vector(vectors); vector; ++vector) {
             const std::size_t z = *vector;
             const BoxLanes one{set(box.centre_u[z]), set(box.centre_v[z]), set(box.half_u[z]),
                                set(box.half_v[z]), set(limits[z])};
-            count += list_lanes(without(of, outside_box(bounds, extent, one)), (first + *vector) * kStep,
+            count += list_lanes(without(of, outside_box(bounds, extent, one)), (first + *vector) * kLaneStep,
                                 pairs + count);
         }
     }

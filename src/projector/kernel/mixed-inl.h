@@ -66,7 +66,7 @@ HWY_INLINE void turn_planes(float least_cosine, MixedFrame& frame) {
 /// across the axis for planes.
 HWY_NOINLINE bool measure_rays(const KernelScene& scene, const MixedGroup& group, const KernelState& state,
                                const NarrowRays* rays, MixedFrame& frame) {
-    constexpr float kLeastSquare = 0.01f;  // of the cosine to the axis
+    constexpr float kLeastCosineSquare = 0.01f;  // of the cosine to the axis
     Floats sum[3] = {set(0.0f), set(0.0f), set(0.0f)};
     for (std::uint32_t v = 0; v < state.group.vectors; ++v)
         for (int a = 0; a < 3; ++a) sum[a] = sum[a] + rays[v].direction[a];
@@ -98,7 +98,7 @@ HWY_NOINLINE bool measure_rays(const KernelScene& scene, const MixedGroup& group
     }
     const float least_cosine = least_lane(cosine);
     frame.speed = largest_lane(speed);
-    if (!(least_cosine > kLeastSquare) || !std::isfinite(frame.speed)) return false;
+    if (!(least_cosine > kLeastCosineSquare) || !std::isfinite(frame.speed)) return false;
     const double far = std::fabs(from.x) + std::fabs(from.y) + std::fabs(from.z);
     const double reach = half.x + half.y + half.z + 2 * far + static_cast<double>(largest_lane(size));
     frame.error = static_cast<float>(2 * kPlaneErrorBound * (reach + 1e-6 * group.origin_terms));

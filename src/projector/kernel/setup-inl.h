@@ -49,9 +49,10 @@ HWY_NOINLINE double put_rectangle(const TileLanes& lanes, std::size_t j, const L
 /// sample. Both by convexity of the weights.
 HWY_NOINLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, std::size_t j,
                               TileLanes& lanes) {
-    constexpr double kReach = 1 + 1e-6, kPositive = 0.1;
+    constexpr double kRectangleReach = 1 + 1e-6, kPositive = 0.1;
     if (!tile.whole_facet || !(tile.least_weight > -1)) {
-        if (put_rectangle(lanes, j, {0, 0, kReach, kReach}, lanes.hull, j) > kPositive) return;
+        if (put_rectangle(lanes, j, {0, 0, kRectangleReach, kRectangleReach}, lanes.hull, j) > kPositive)
+            return;
     }
     const IdTriple& corner = scene.mesh->facets[tile.facet];
     const double out = std::min(0.0, tile.least_weight) - 1e-9;  // the weight of the other two corners

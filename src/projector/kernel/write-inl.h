@@ -87,10 +87,10 @@ HWY_INLINE PlacedFloats narrow(const Placed& placed) {
 
 /// Lanes whose values hit_point() gives too: trusted, and inside by more than doubles and floats round.
 HWY_INLINE Mask sound(const PlacedFloats& placed) {
-    constexpr float kInside = 1e-6f;
+    constexpr float kLeastInside = 1e-6f;
     const Floats least_weight =
         least(least(placed.second, placed.third), set(1.0f) - placed.second - placed.third);
-    return (least_weight > set(kInside)) & (absolute(placed.t) < set(kNever));
+    return (least_weight > set(kLeastInside)) & (absolute(placed.t) < set(kNever));
 }
 
 // What the samples of vectors surely see: placed in lanes.

@@ -68,8 +68,8 @@ inline double largest_coordinate(const Vec3& v) {
 
 /// Of a gradient's part in one sight, per length of the tangent: what rounding leaves of it.
 inline double rounding_of_way(double index, double by_distance, double coordinate) {
-    constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-    return kRounding * index * (1 + coordinate * by_distance);
+    constexpr double kSightRounding = 64 * std::numeric_limits<double>::epsilon();
+    return kSightRounding * index * (1 + coordinate * by_distance);
 }
 
 }  // namespace trilens
