@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "camera/model/models.h"
+#include "camera/model/ray_slopes.h"
 
 namespace trilens {
 namespace {
@@ -14,6 +15,7 @@ constexpr int kBlendStrips = 8;          // patches across a blend: there a poin
 constexpr double kSame = 1e-7;           // share of the film: images nearer to each other are one
 constexpr double kCurvatureStep = 2e-4;  // share of the film, for second differences
 constexpr double kBeyondPatch = 3;       // a patch of a blend goes on by so many of its sizes
+constexpr double kSlopeStep = 1e-5;      // share of the film, for first differences
 
 struct View {
     ModelPointer model;
@@ -52,8 +54,10 @@ class MultiPerspective final : public CameraModel {
     void make_patches();
     Ramp ramp_at(int axis, const View& view, double at) const;
     double ramp(Ramp kind, int axis, const View& view, double at) const;
+    double ramp_slope(Ramp kind, int axis) const;
     std::size_t patch_at(const Vec2& at) const;
     std::optional<Ray> ray_of_patch(std::size_t patch, const Vec2& at) const;
+    std::optional<RaySlopes> slopes_of_patch(std::size_t patch, const Vec2& at) const;
     template <class Found>
     void search(const Vec3& point, std::size_t patch, int across, const Found& found) const;
     std::optional<Vec3> miss(const Vec3& point, std::size_t patch, const Vec2& at) const;
@@ -119,6 +123,11 @@ double MultiPerspective::ramp(Ramp kind, int axis, const View& view, double at) 
     if (kind == Ramp::kRising) return (at - view.low[axis]) / blend_[axis] + 0.5;
     if (kind == Ramp::kFalling) return (view.high[axis] - at) / blend_[axis] + 0.5;
     return kind == Ramp::kWhole ? 1 : 0;
+}
+
+double MultiPerspective::ramp_slope(Ramp kind, int axis) const {
+    if (kind == Ramp::kRising) return 1 / blend_[axis];
+    return kind == Ramp::kFalling ? -1 / blend_[axis] : 0;
 }
 
 void MultiPerspective::make_cuts(int axis) {
@@ -190,6 +199,26 @@ std::optional<Ray> MultiPerspective::ray_of_patch(std::size_t patch, const Vec2&
     // Views that look opposite ways have no ray between them.
     if (!(length(sum.direction) > 1e-9)) return std::nullopt;
     return sum;
+}
+
+std::optional<RaySlopes> MultiPerspective::slopes_of_patch(std::size_t patch, const Vec2& at) const {
+    RaySlopes sum;
+    WeightSlopes total;
+    for (const Share& share : patches_[patch].shares) {
+        const View& view = views_[share.view];
+        const std::optional<RaySlopes> one = ray_slopes(*view.model, at - view.low, kSlopeStep * film_.width);
+        if (!one) return std::nullopt;
+        const double x = ramp(share.x, 0, view, at.x), y = ramp(share.y, 1, view, at.y);
+        const WeightSlopes weight{x * y, {ramp_slope(share.x, 0) * y, x * ramp_slope(share.y, 1)}};
+        add_product(sum, weight, *one);
+        total.here += weight.here;
+        total.per_pixel += weight.per_pixel;
+    }
+    if (!(total.here > 0)) return std::nullopt;
+    RaySlopes mean;
+    add_product(mean, {1 / total.here, -total.per_pixel / (total.here * total.here)}, sum);
+    if (!(length(mean.corner.direction) > 1e-9)) return std::nullopt;
+    return mean;
 }
 
 std::optional<FilmImage> MultiPerspective::place(const Vec3& point, std::size_t patch) const {
@@ -273,9 +302,7 @@ std::vector<FilmImage> MultiPerspective::places(const Vec3& point, std::size_t p
 std::optional<Vec3> MultiPerspective::miss(const Vec3& point, std::size_t patch, const Vec2& at) const {
     const std::optional<Ray> ray = ray_of_patch(patch, at);
     if (!ray) return std::nullopt;
-    const Vec3 from = point - ray->origin;
-    const double t = dot(from, ray->direction) / dot(ray->direction, ray->direction);
-    return from / std::max(std::fabs(t), 1e-9) - (t < 0 ? -1.0 : 1.0) * ray->direction;
+    return miss_slopes({*ray, {}, {}}, point).here;
 }
 
 /// About where the image lies that merges with this one at a fold: along the direction in which the miss
@@ -305,16 +332,14 @@ std::optional<Vec2> MultiPerspective::beyond_fold(const Vec3& point, std::size_t
 /// point behind the ray.
 std::optional<FilmImage> MultiPerspective::solve(const Vec3& point, std::size_t patch, Vec2 at) const {
     const Vec2 half = patches_[patch].half;
-    const double step = 1e-5 * film_.width, reach = 2 * std::max(half.x, half.y);
+    const double reach = 2 * std::max(half.x, half.y);
     for (int i = 0; i < kBlendSteps; ++i) {
-        const auto here = miss(point, patch, at), x1 = miss(point, patch, at + Vec2(step, 0)),
-                   x0 = miss(point, patch, at - Vec2(step, 0)), y1 = miss(point, patch, at + Vec2(0, step)),
-                   y0 = miss(point, patch, at - Vec2(0, step));
-        if (!here || !x1 || !x0 || !y1 || !y0) return std::nullopt;
-        const Vec3 dx = (*x1 - *x0) / (2 * step), dy = (*y1 - *y0) / (2 * step);
+        const std::optional<RaySlopes> rays = slopes_of_patch(patch, at);
+        if (!rays) return std::nullopt;
+        const auto& [here, dx, dy] = miss_slopes(*rays, point);
         const double xx = dot(dx, dx), xy = dot(dx, dy), yy = dot(dy, dy), area = xx * yy - xy * xy;
         if (!(area > 1e-12 * xx * yy)) return std::nullopt;
-        const double bx = -dot(dx, *here), by = -dot(dy, *here);
+        const double bx = -dot(dx, here), by = -dot(dy, here);
         Vec2 move = Vec2(yy * bx - xy * by, xx * by - xy * bx) / area;
         if (length(move) > reach) move *= reach / length(move);
         at += move;

@@ -286,23 +286,37 @@ LinearView make_linear_view(const CameraDescription& from, const FilmSize& film,
 
 namespace {
 
+LinearRays linear_rays_of(const LinearView& view, const FilmSize& film) {
+    const auto ray = [&](const Vec2& at) {
+        Ray one = film_ray(view.camera, at);
+        one.origin += view.near_depth * one.direction;
+        return one;
+    };
+    // Over the whole film, so that rounding does not grow across it.
+    const Ray corner = ray(Vec2(0));
+    const auto per_pixel = [&](const Vec2& end, double pixels) {
+        const Ray there = ray(end);
+        return Ray{(there.origin - corner.origin) / pixels, (there.direction - corner.direction) / pixels};
+    };
+    return {corner, per_pixel({film.width, 0}, film.width), per_pixel({0, film.height}, film.height)};
+}
+
 class LinearModel final : public CameraModel {
   public:
     explicit LinearModel(const ModelSource& source)
-        : view_(make_linear_view(source.from, source.film, source.site)), focus_(source.focus()) {
+        : view_(make_linear_view(source.from, source.film, source.site)),
+          rays_(linear_rays_of(view_, source.film)),
+          focus_(source.focus()) {
         if (const auto* volume = std::get_if<ViewVolume>(&source.from.kind))
             focus_ = std::fabs(volume->prp.z);
     }
-    std::optional<Ray> ray(const Vec2& at) const override {
-        Ray ray = film_ray(view_.camera, at);
-        ray.origin += view_.near_depth * ray.direction;
-        return ray;
-    }
+    std::optional<Ray> ray(const Vec2& at) const override { return rays_.at(at); }
+    const LinearRays* linear_rays() const override { return &rays_; }
     std::optional<FilmImage> place(const Vec3& point, std::size_t) const override {
         const Vec3 screen = screen_from_world(view_.camera, point);
         if (!(screen.z > 0)) return std::nullopt;
         const Vec2 pixel = Vec2(screen.x, screen.y) / screen.z;
-        const Ray there = *ray(pixel);
+        const Ray there = rays_.at(pixel);
         const double t = dot(point - there.origin, there.direction) / dot(there.direction, there.direction);
         return FilmImage{pixel, t, there.origin};
     }
@@ -314,6 +328,7 @@ class LinearModel final : public CameraModel {
 
   private:
     LinearView view_;
+    LinearRays rays_;
     double focus_;
 };
 

@@ -18,6 +18,17 @@ struct FilmImage {
     Vec3 origin{0};  // of that ray
 };
 
+/// Rays whose origin and direction are linear functions of the film's place, as those of a pinhole and of
+/// parallel rays are: the ray at the film's top left, and what a pixel to the right and one down add to it.
+struct LinearRays {
+    Ray corner, per_x, per_y;
+
+    Ray at(const Vec2& pixel) const {
+        return {corner.origin + pixel.x * per_x.origin + pixel.y * per_y.origin,
+                corner.direction + pixel.x * per_x.direction + pixel.y * per_y.direction};
+    }
+};
+
 /// A film in pixels.
 struct FilmSize {
     double width = 1, height = 1;
@@ -36,6 +47,9 @@ class CameraModel {
     /// length is the unit of t (unit, or of unit depth along the view axis where there is one). None where
     /// the camera has no ray. Defined a little beyond the film too, where the formula goes on.
     virtual std::optional<Ray> ray(const Vec2& at) const = 0;
+
+    /// The rays of all places, where these are linear functions of the place; else null.
+    virtual const LinearRays* linear_rays() const { return nullptr; }
 
     virtual std::size_t branch_count() const { return 1; }
     /// Where the branch shows the point, or would, were the film larger. None where its formula has no place
