@@ -11,17 +11,21 @@
 #include <cmath>
 #include <compare>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "base/util/check.h"
 #include "surfaces/memory_budget.h"
 #include "surfaces/patch_mesh.h"
+#include "surfaces/polynomial/few_points.h"
+#include "surfaces/polynomial/sub_patches.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -106,11 +110,71 @@ std::shared_ptr<SharedTrees> trees_by(const TreeRules& rules) {
 
 // --- Patches ---
 
+using PointDescriptor = Bfr::Surface<double>::PointDescriptor;
+
+/// Of the kind that `surface`, which is irregular, belongs to.
+std::unique_ptr<const KindPoints> make_kind_points(const Bfr::Surface<double>& surface, FaceDomain domain,
+                                                   int depth) {
+    const auto count = static_cast<std::size_t>(surface.GetNumPatchPoints()),
+               controls = static_cast<std::size_t>(surface.GetNumControlPoints());
+    const auto unit_vectors = [count](std::size_t size) {
+        std::vector<double> points(count * size, 0.0);
+        for (std::size_t k = 0; k < size; ++k) points[k * size + k] = 1;
+        return points;
+    };
+    std::vector<double> rows = unit_vectors(controls);
+    surface.ComputePatchPoints(rows.data(), PointDescriptor(static_cast<int>(controls)));
+    rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(controls * controls));
+
+    const std::vector<double> units = unit_vectors(count);
+    const PointDescriptor all(static_cast<int>(count));
+    std::vector<double> weights(count);
+    const auto used = [&](const Vec2& uv) {
+        surface.Evaluate(&uv.x, units.data(), all, weights.data());
+        std::vector<int> points;
+        for (std::size_t k = 0; k < count; ++k)
+            if (weights[k] != 0) points.push_back(static_cast<int>(k));
+        return points;
+    };
+    return std::make_unique<KindPoints>(KindPoints{std::move(rows), SubPatches(domain, depth, used)});
+}
+
+/// The kinds of a cage's faces that many have.
+class ManyKinds {
+  public:
+    /// Of the face whose `surface` has that kind; none where few faces have been of it until now, or it has
+    /// very many points.
+    const KindPoints* of(std::uint64_t kind, const Bfr::Surface<double>& surface, FaceDomain domain,
+                         int depth) {
+        constexpr int kMany = 64;          // take as long as what all have in common
+        constexpr int kMostPoints = 1200;  // while it is made it takes their square
+        if (surface.GetNumPatchPoints() > kMostPoints) return nullptr;
+        const std::lock_guard lock(mutex_);
+        Kind& known = kinds_[kind];
+        if (!known.points && ++known.asked > kMany) {
+            known.points = make_kind_points(surface, domain, depth);
+            bytes_ += known.points->bytes();
+        }
+        return known.points.get();
+    }
+    std::size_t bytes() const { return bytes_; }
+
+  private:
+    struct Kind {
+        int asked = 0;
+        std::unique_ptr<const KindPoints> points;
+    };
+    std::mutex mutex_;
+    std::map<std::uint64_t, Kind> kinds_;
+    std::atomic<std::size_t> bytes_{0};
+};
+
 /// One face's limit surface with its patch points, relative to `origin` so that small faces far away stay
 /// exact.
 struct Patch {
     Bfr::Surface<double> surface;
-    std::vector<double> points;
+    std::vector<double> points;           // empty: those that matter are made where they are asked for
+    const KindPoints* by_kind = nullptr;  // of an irregular one without points
     Vec3 origin{0};
     double extent = 0;
     std::optional<std::uint64_t> kind;
@@ -125,20 +189,34 @@ struct Patch {
 /// Bytes of patches: the first ones asked for, and the latest of the others.
 constexpr BoundedCache<Patch>::Budget kPatchBudget{kMostPatchBytes / 9 * 6, kMostPatchBytes / 9};
 
+/// The patch points of more faces of the mesh do not fit into that, at some 12 kB.
+constexpr int kDense = 20'000;
+
 }  // namespace
 
 struct LimitPatches::Impl {
     PatchMesh mesh;
     std::shared_ptr<SharedTrees> trees;
     Bfr::RefinerSurfaceFactory<> factory;
+    FaceDomain domain;
+    bool is_dense;         // has so many faces that not all of their patch points could be kept
+    std::uint64_t number;  // of this surface, and of no other
+    ManyKinds kinds;
     BoundedCache<Patch> patches;  // per face of the mesh
 
     Impl(PatchMesh made, const CheckedCage& cage)
         : mesh(std::move(made)),
           trees(trees_by({cage.scheme, cage.interpolate_boundary, depth()})),
           factory(*static_cast<const Far::TopologyRefiner*>(mesh.refiner.get()), options()),
+          domain(mesh.tree.triangles ? FaceDomain::kTriangle : FaceDomain::kSquare),
+          is_dense(factory.GetNumFaces() > kDense),
+          number(next_number()),
           patches(static_cast<std::size_t>(factory.GetNumFaces()), kPatchBudget) {}
 
+    static std::uint64_t next_number() {
+        static std::atomic<std::uint64_t> last{0};
+        return ++last;
+    }
     int depth() const { return kDeepest - mesh.levels(); }
     Bfr::SurfaceFactory::Options options() const {
         Bfr::SurfaceFactory::Options options;
@@ -161,19 +239,64 @@ struct LimitPatches::Impl {
         patch.own_tree = *own_tree;
         if (!patch.surface.IsRegular() && !patch.surface.IsLinear()) patch.kind = SharedTrees::key();
 
-        std::vector<int> control(static_cast<std::size_t>(patch.surface.GetNumControlPoints()));
+        const auto count = 3 * static_cast<std::size_t>(patch.surface.GetNumPatchPoints()),
+                   controls = 3 * static_cast<std::size_t>(patch.surface.GetNumControlPoints());
+        thread_local std::vector<double> points;
+        points.resize(count);
+        patch.origin = mesh.points[first_control(patch.surface)];
+        gather_controls(patch, points.data());
+        for (std::size_t k = 0; k < controls; ++k) patch.extent = std::max(patch.extent, std::abs(points[k]));
+        if (is_dense && patch.kind) patch.by_kind = kinds.of(*patch.kind, patch.surface, domain, depth());
+        if (patch.by_kind || (is_dense && count == controls)) return patch;
+        patch.surface.ComputePatchPoints(points.data(), 3);
+        patch.points = points;
+        return patch;
+    }
+
+    static int first_control(const Bfr::Surface<double>& surface) {
+        std::vector<int> control(static_cast<std::size_t>(surface.GetNumControlPoints()));
+        surface.GetControlPointIndices(control.data());
+        return control[0];
+    }
+
+    /// Relative to the patch's origin.
+    void gather_controls(const Patch& patch, double* points) const {
+        thread_local std::vector<int> control;
+        control.resize(static_cast<std::size_t>(patch.surface.GetNumControlPoints()));
         patch.surface.GetControlPointIndices(control.data());
-        patch.origin = mesh.points[control[0]];
-        patch.points.resize(3 * static_cast<std::size_t>(patch.surface.GetNumPatchPoints()));
         for (std::size_t i = 0; i < control.size(); ++i) {
             const Vec3 offset = mesh.points[control[i]] - patch.origin;
-            for (int axis = 0; axis < 3; ++axis) {
-                patch.points[3 * i + axis] = offset[axis];
-                patch.extent = std::max(patch.extent, std::abs(offset[axis]));
-            }
+            for (int axis = 0; axis < 3; ++axis) points[3 * i + axis] = offset[axis];
         }
-        patch.surface.ComputePatchPoints(patch.points.data(), 3);
-        return patch;
+    }
+
+    /// At (u, v) of a face of the mesh, relative to the patch's origin.
+    template <bool kSecondOrder>
+    void eval(const Patch& patch, int face, const Vec2& uv, SurfacePoint& point) const {
+        if (!patch.points.empty()) return eval_points<kSecondOrder>(patch, patch.points.data(), uv, point);
+        thread_local FewPoints few;
+        const auto gather = [&](double* controls) { gather_controls(patch, controls); };
+        const auto sum = [&](const double* weights, const double* controls, double* result) {
+            patch.surface.ApplyStencil(weights, controls, 3, result);
+        };
+        const FewPoints::Face of{number, face, patch.by_kind,
+                                 static_cast<std::size_t>(patch.surface.GetNumControlPoints())};
+        eval_points<kSecondOrder>(patch, few.at(of, uv, gather, sum), uv, point);
+        if (!std::isnan(point.position.x)) return;
+        // On the border of parts that are no sub-patches, or of infinite points.
+        std::vector<double> points(3 * static_cast<std::size_t>(patch.surface.GetNumPatchPoints()));
+        gather(points.data());
+        patch.surface.ComputePatchPoints(points.data(), 3);
+        eval_points<kSecondOrder>(patch, points.data(), uv, point);
+    }
+
+    template <bool kSecondOrder>
+    static void eval_points(const Patch& patch, const double* points, const Vec2& uv, SurfacePoint& at) {
+        if constexpr (kSecondOrder)
+            patch.surface.Evaluate(&uv.x, points, 3, &at.position.x, &at.du.x, &at.dv.x, &at.duu.x, &at.duv.x,
+                                   &at.dvv.x);
+        else
+            patch.surface.Evaluate(&uv.x, points, 3, &at.position.x, &at.du.x, &at.dv.x);
     }
 
     template <class Use>
@@ -194,8 +317,27 @@ bool LimitPatches::has_limit(int face) const {
     return impl_->has_limit(face, 0);
 }
 
+std::vector<Box> LimitPatches::hulls(std::span<const Face> faces) const {
+    if (!impl_) return {};
+    const std::vector<Box> of_mesh = face_hulls_of(impl_->mesh);
+    const auto& levels = impl_->mesh.tree.levels;
+    const auto include = [&](const auto& self, int face, std::size_t level, Box& hull) -> void {
+        if (level == levels.size()) return hull.include(of_mesh[static_cast<std::size_t>(face)]);
+        for (int k = 0; k < levels[level].count(face); ++k)
+            self(self, levels[level](face, k), level + 1, hull);
+    };
+    std::vector<Box> hulls(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        const bool is_part = faces[f].sub_face >= 0;
+        include(include, is_part ? levels[0](faces[f].face, faces[f].sub_face) : faces[f].face,
+                is_part ? 1 : 0, hulls[f]);
+    }
+    return hulls;
+}
+
 std::size_t LimitPatches::bytes() const {
-    return impl_ ? impl_->mesh.bytes() + impl_->trees->bytes() + impl_->patches.bytes() : 0;
+    return impl_ ? impl_->mesh.bytes() + impl_->trees->bytes() + impl_->kinds.bytes() + impl_->patches.bytes()
+                 : 0;
 }
 
 template <bool kSecondOrder>
@@ -205,12 +347,7 @@ LimitPatches::Point LimitPatches::eval_to_order(int face, int sub_face, const Ve
         Point result;
         result.extent = patch.extent;
         SurfacePoint& point = result.point;
-        if constexpr (kSecondOrder)
-            patch.surface.Evaluate(&leaf.uv.x, patch.points.data(), 3, &point.position.x, &point.du.x,
-                                   &point.dv.x, &point.duu.x, &point.duv.x, &point.dvv.x);
-        else
-            patch.surface.Evaluate(&leaf.uv.x, patch.points.data(), 3, &point.position.x, &point.du.x,
-                                   &point.dv.x);
+        impl_->eval<kSecondOrder>(patch, leaf.face, leaf.uv, point);
         point.position += patch.origin;
         for (Vec3* first : {&point.du, &point.dv}) *first *= leaf.scale;
         for (Vec3* second : {&point.duu, &point.duv, &point.dvv}) *second *= leaf.scale * leaf.scale;
@@ -234,11 +371,10 @@ std::optional<std::uint64_t> LimitPatches::kind(int face, int sub_face) const {
 
 FaceControls LimitPatches::controls(int face, int sub_face) const {
     const FaceTree::Leaf leaf = impl_->mesh.tree.leaf(face, sub_face, Vec2(0));
-    return impl_->with(leaf.face, [](const Patch& patch) {
+    return impl_->with(leaf.face, [this](const Patch& patch) {
         FaceControls controls{patch.origin, {}};
-        for (std::size_t k = 0; k < static_cast<std::size_t>(patch.surface.GetNumControlPoints()); ++k)
-            controls.offsets.emplace_back(patch.points[3 * k], patch.points[3 * k + 1],
-                                          patch.points[3 * k + 2]);
+        controls.offsets.resize(static_cast<std::size_t>(patch.surface.GetNumControlPoints()));
+        impl_->gather_controls(patch, &controls.offsets[0].x);
         return controls;
     });
 }

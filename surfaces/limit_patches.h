@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "base/math/box.h"
 #include "base/raymesh/surface.h"
 #include "surfaces/checked_cage.h"
 #include "surfaces/polynomial/face_stencils.h"
@@ -15,7 +18,9 @@
 namespace trilens {
 
 /// Limit patches of the faces of a cage, made when a face is first evaluated, from any thread. A bounded
-/// number of them is kept; they are the same bit for bit whenever they are made.
+/// number of them is kept; they are the same bit for bit whenever they are made. Where they are very many, a
+/// patch that is of a kind with many others has no patch points of its own: those that matter at a place are
+/// made when it is evaluated there, and are the same bit for bit, too.
 ///
 /// Exactness: patches are exact (bicubic, or quartic for Loop) outside a region of 2^-10 of a face around
 /// each extraordinary vertex and along creases of a sharpness near 10; inside it OpenSubdiv fits Gregory
@@ -30,6 +35,13 @@ class LimitPatches {
     /// Whether all of the face has a limit surface: false for holes, and near boundaries that are not
     /// interpolated.
     bool has_limit(int face) const;
+
+    /// A face of the cage, or the sub-face of it from a corner on: see eval().
+    struct Face {
+        int face = 0, sub_face = -1;
+    };
+    /// Per face a box that holds its limit surface, without any of its patches.
+    std::vector<Box> hulls(std::span<const Face> faces) const;
 
     /// Position and derivatives, without a normal, and how far the control points around spread (0: they
     /// coincide).

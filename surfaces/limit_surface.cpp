@@ -98,29 +98,6 @@ Vec2 clamp_to_domain(FaceDomain domain, const Vec2& uv) {
     return inside;
 }
 
-/// Per face of the cage a box around it and the faces that touch it: the control points of its limit surface,
-/// whose weights are not negative and add up to one (Catmull and Clark 1978, Loop 1987), so it lies within.
-std::vector<Box> hulls_of(const CheckedCage& cage) {
-    constexpr double kRoom = 1e-4;  // of the box's size: what approximations of patches and rounding take
-    std::vector<Box> around(cage.points.size()), hulls(static_cast<std::size_t>(cage.face_count()));
-    const auto for_each_corner = [&](int face, const auto& use) {
-        for (int k = 0; k < cage.face_size(face); ++k)
-            use(static_cast<std::size_t>(cage.vertices[static_cast<std::size_t>(cage.first[face] + k)]));
-    };
-    for (int face = 0; face < cage.face_count(); ++face) {
-        Box own;
-        for_each_corner(face, [&](std::size_t v) { own.include(cage.points[v]); });
-        for_each_corner(face, [&](std::size_t v) { around[v].include(own); });
-    }
-    for (int face = 0; face < cage.face_count(); ++face) {
-        Box& hull = hulls[static_cast<std::size_t>(face)];
-        for_each_corner(face, [&](std::size_t v) { hull.include(around[v]); });
-        const Vec3 room(kRoom * length(hull.size()));
-        hull = {hull.low - room, hull.high + room};
-    }
-    return hulls;
-}
-
 /// Per face of the cage whether its limit surface lies in a plane for sure: without smoothing where its
 /// corners do.
 std::vector<bool> flat_faces(const CheckedCage& cage) {
@@ -167,7 +144,6 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn, double memory)
         : domain_(cage.scheme == SubdivisionScheme::kLoop ? FaceDomain::kTriangle : FaceDomain::kSquare),
           patches_(cage, name, memory),
-          hulls_(hulls_of(cage)),
           is_flat_(flat_faces(cage)) {
         std::vector<bool> is_hole(static_cast<std::size_t>(cage.face_count()), false);
         for (int hole : cage.holes) is_hole[static_cast<std::size_t>(hole)] = true;
@@ -182,6 +158,10 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
                 ++left_out;
             }
         }
+        std::vector<LimitPatches::Face> faces;
+        faces.reserve(faces_.size());
+        for (const SurfaceFace& face : faces_) faces.push_back({face.cage_face, face.sub_face});
+        hulls_ = patches_.hulls(faces);
         if (left_out > 0 && warn)
             warn(name + ": " + std::to_string(left_out) + " faces have no limit surface and are left out");
     }
@@ -195,9 +175,7 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     bool is_flat(Id face) const override {
         return is_flat_[static_cast<std::size_t>(faces_[face].cage_face)];
     }
-    std::optional<Box> hull(Id face) const override {
-        return hulls_[static_cast<std::size_t>(faces_[face].cage_face)];
-    }
+    std::optional<Box> hull(Id face) const override { return hulls_[face]; }
     std::optional<CageFace> cage_face(Id face) const override {
         if (!is_as_given_) return std::nullopt;
         return CageFace{faces_[face].cage_face, faces_[face].sub_face};
@@ -267,9 +245,9 @@ class LimitSurface final : public Surface, public HasHulls, public HasCageFaces,
     bool is_as_given_ = true;
     LimitPatches patches_;
     SharedPolynomialBounder bounder_;
-    std::vector<Box> hulls_;     // per face of the cage
-    std::vector<bool> is_flat_;  // likewise
+    std::vector<bool> is_flat_;  // per face of the cage
     std::vector<SurfaceFace> faces_;
+    std::vector<Box> hulls_;  // of these
 };
 
 }  // namespace

@@ -122,8 +122,10 @@ bool soften_folded_darts(const Far::TopologyLevel& level, CheckedCage& cage) {
 /// non-manifold neighbourhoods apart, which Bfr 3.5 gets wrong where several meet in one face.
 int levels_before_patches(const Far::TopologyLevel& level, const CheckedCage& cage) {
     const bool linear = cage.scheme == SubdivisionScheme::kBilinear;
-    for (int v = 0; v < level.GetNumVertices() && !linear; ++v)
-        if (is_folded(level, v) || level.IsVertexNonManifold(v)) return 2;
+    for (int v = 0; v < level.GetNumVertices() && !linear; ++v) {
+        const bool has_faces = level.GetVertexFaces(v).size() > 0;  // else it counts as non-manifold
+        if (has_faces && (is_folded(level, v) || level.IsVertexNonManifold(v))) return 2;
+    }
     for (int e = 0; e < level.GetNumEdges() && !linear; ++e)
         if (level.IsEdgeNonManifold(e)) return 2;
     if (cage.scheme == SubdivisionScheme::kLoop) return 0;
@@ -275,6 +277,24 @@ PatchMesh make_patch_mesh(const CheckedCage& cage, const std::string& name, doub
     mesh.refiner = std::move(refiner);
     mesh.points = std::move(work.points);
     return mesh;
+}
+
+std::vector<Box> face_hulls_of(const PatchMesh& mesh) {
+    constexpr double kRoom = 1e-4;  // of the box's size: what approximations of patches and rounding take
+    const auto level = static_cast<const Far::TopologyRefiner*>(mesh.refiner.get())->GetLevel(0);
+    std::vector<Box> around(mesh.points.size()), hulls(static_cast<std::size_t>(level.GetNumFaces()));
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        Box own;
+        for (const int v : level.GetFaceVertices(face)) own.include(mesh.points[static_cast<std::size_t>(v)]);
+        for (const int v : level.GetFaceVertices(face)) around[static_cast<std::size_t>(v)].include(own);
+    }
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        Box& hull = hulls[static_cast<std::size_t>(face)];
+        for (const int v : level.GetFaceVertices(face)) hull.include(around[static_cast<std::size_t>(v)]);
+        const Vec3 room(kRoom * length(hull.size()));
+        hull = {hull.low - room, hull.high + room};
+    }
+    return hulls;
 }
 
 // Walks down the levels of uniform refinement.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/math/box.h"
 #include "base/math/vec.h"
 #include "surfaces/checked_cage.h"
 
@@ -56,6 +57,11 @@ struct PatchMesh {
     /// What it holds: the arrays here, and OpenSubdiv's as counted from its headers.
     std::size_t bytes() const;
 };
+
+/// Per face of the last level a box around it and the faces that touch it: the control points of its limit
+/// surface, whose weights are not negative and add up to one (Catmull and Clark 1978, Loop 1987), so it lies
+/// within.
+std::vector<Box> face_hulls_of(const PatchMesh& mesh);
 
 /// Throws InputError(name, ...) where OpenSubdiv refuses the topology, and, before anything large is made,
 /// where the limit surface needs more than `memory` bytes. cage.face_count() > 0.

@@ -59,6 +59,19 @@ Cage cone(int n) {
     return make_cage(points, faces);
 }
 
+/// Every triangle cut into three at a vertex in its middle.
+Cage stellated(const Cage& cage) {
+    std::vector<Vec3> points = cage.points;
+    std::vector<std::vector<int>> faces;
+    for (std::size_t f = 0; f < cage.face_vertex_counts.size(); ++f) {
+        const auto corner = [&](std::size_t k) { return cage.face_vertex_indices[3 * f + k % 3]; };
+        const int middle = static_cast<int>(points.size());
+        points.push_back((cage.points[corner(0)] + cage.points[corner(1)] + cage.points[corner(2)]) / 3.0);
+        for (std::size_t k = 0; k < 3; ++k) faces.push_back({corner(k), corner(k + 1), middle});
+    }
+    return make_cage(points, faces);
+}
+
 std::string dense_refusal(const Cage& cage, double memory) {
     try {
         make_limit_surface(cage, "dense", {}, memory);
@@ -70,12 +83,63 @@ std::string dense_refusal(const Cage& cage, double memory) {
 
 constexpr std::array<Vec2, 4> kCorners = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
 
+bool are_same(const SurfacePoint& a, const SurfacePoint& b) {
+    return a.position == b.position && a.du == b.du && a.dv == b.dv && a.duu == b.duu && a.duv == b.duv &&
+           a.dvv == b.dvv && a.normal == b.normal;
+}
+
+/// Corners, sides, both close to extraordinary vertices and far from them.
+std::vector<Vec2> places_of_all_depths() {
+    std::vector<Vec2> places(kCorners.begin(), kCorners.end());
+    for (double off = 0.7; off > 0x1p-12; off *= 0.6)
+        for (const Vec2& corner : kCorners) places.push_back(glm::abs(corner - off * Vec2(0.9, 0.4)));
+    for (int k = 1; k < 8; ++k) places.emplace_back(k / 8.0, (k % 4) / 4.0);
+    return places;
+}
+
 }  // namespace
 
-TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 MB", "[surfaces][law]") {
+TEST_CASE("A dense cage's face is the same from a few patch points as from all of them", "[surfaces][law]") {
+    constexpr Id kWithAll = 60;  // of one kind: fewer than what is made of few points takes
+    for (const SubdivisionScheme scheme : {SubdivisionScheme::kCatmullClark, SubdivisionScheme::kLoop}) {
+        Cage cage = scheme == SubdivisionScheme::kLoop ? stellated(bumpy_sphere(5)) : bumpy_sphere(5);
+        cage.scheme = scheme;
+        const auto first = make_limit_surface(cage, "sphere", {}, 1e9),
+                   later = make_limit_surface(cage, "sphere", {}, 1e9);
+        const Id count = static_cast<Id>(first->face_count());
+        REQUIRE(count == 3 * 20480);
+        for (Id face = 0; face < count; ++face) later->eval(face, Vec2(0.3, 0.2));
+        CHECK(later->bytes_held() < 100e6);
+        for (Id face = count - kWithAll; face < count; ++face)
+            for (const Vec2& uv : places_of_all_depths()) {
+                CAPTURE(face, uv.x, uv.y);
+                const SurfacePoint with_all = first->eval(face, uv), with_few = later->eval(face, uv);
+                REQUIRE(are_same(with_all, with_few));
+                const SurfacePoint at_first_order = later->eval_first_order(face, uv);
+                REQUIRE(at_first_order.position == with_all.position);
+                REQUIRE(at_first_order.normal == with_all.normal);
+            }
+    }
+}
+
+TEST_CASE("Vertices that no face has change nothing of a cage's surface", "[surfaces][law]") {
+    const Cage cage = bumpy_sphere(2);
+    Cage more = cage;
+    for (int k = 0; k < 5; ++k) more.points.emplace_back(k, 2 * k, 3);
+    const auto surface = make_limit_surface(cage, "sphere", {}, 1e9),
+               with = make_limit_surface(more, "sphere", {}, 1e9);
+    REQUIRE(with->face_count() == surface->face_count());
+    for (Id face = 0; face < surface->face_count(); ++face)
+        for (const Vec2& uv : {Vec2(0.3, 0.6), Vec2(0, 0), Vec2(1, 0.5)})
+            REQUIRE(are_same(with->eval(face, uv), surface->eval(face, uv)));
+    // Nor is it refined for their sake.
+    CHECK(static_cast<double>(with->bytes_held()) < 1.01 * static_cast<double>(surface->bytes_held()));
+}
+
+TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 80 MB", "[surfaces][law]") {
     const Cage cage = bumpy_sphere(5);
     REQUIRE(cage.face_vertex_counts.size() == 20480);
-    constexpr double kMost = 500e6;
+    constexpr double kMost = 80e6;  // all points of all patches together would take 720 MB
     const auto surface = make_limit_surface(cage, "sphere", {}, 700e6);
     REQUIRE(surface->face_count() == 3 * 20480);
     CHECK(surface->bytes_held() < 25e6);  // nothing is made before it is asked for
@@ -99,18 +163,11 @@ TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 M
         if (face % 4096 == 0) REQUIRE(static_cast<double>(surface->bytes_held()) < kMost);
     }
     CHECK(worst < 1e-12);
-    const double held = static_cast<double>(surface->bytes_held());
-    CHECK(held < kMost);
-    CHECK(held > 470e6);  // all patches together would be above the budget: it was full
+    CHECK(static_cast<double>(surface->bytes_held()) < kMost);
 
-    // Patches that are made once more are the same bit for bit.
-    for (Id face = 0; face < surface->face_count(); face += 17) {
-        const SurfacePoint again = surface->eval(face, Vec2(0.3, 0.6)), &before = first_time[face];
-        const bool same = again.position == before.position && again.du == before.du &&
-                          again.dv == before.dv && again.duu == before.duu && again.duv == before.duv &&
-                          again.dvv == before.dvv && again.normal == before.normal;
-        REQUIRE(same);
-    }
+    // Points that are made once more are the same bit for bit.
+    for (Id face = 0; face < surface->face_count(); face += 17)
+        REQUIRE(are_same(surface->eval(face, Vec2(0.3, 0.6)), first_time[face]));
     CHECK(static_cast<double>(surface->bytes_held()) < kMost);
 }
 
