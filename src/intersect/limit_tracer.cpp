@@ -24,9 +24,10 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kSelfHit = 1e-9;
 constexpr std::size_t kFacetsPerTask = 256;
 
-// A patch that strays s from a facet of size h turns by about 4 s / h from its middle to its ends; the stray
-// kept is twice what was seen, and rays within twice that angle of the surface may meet the patch twice.
-constexpr double kGrazing = 4;
+// A patch that bends by s off the plane of a facet of size h turns by about 4 s / h from its middle to its
+// ends; the bend kept is twice what was seen, and rays within twice that angle of the surface may meet the
+// patch twice; so may those within twice the angle by which it has turned from the facet where it is met.
+constexpr double kGrazing = 4, kTurns = 2;
 
 // How much wider than its patches the box around a surface is, as a share of itself: patches stray by what a
 // few samples say.
@@ -68,8 +69,18 @@ Box box_of_closed_form(const Surface& surface) {
     return box;
 }
 
-Vec3 chord_normal(const RayPatch& patch) {
-    return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
+/// Where the surface has no normal.
+Vec3 normal_for(const Surface& surface, const RayPatch& patch) {
+    const Vec3 chord = chord_normal(patch);
+    if (chord != Vec3(0)) return chord;
+    return surface.eval_first_order(patch.face, (patch.uv[0] + patch.uv[1] + patch.uv[2]) / 3.0).normal;
+}
+
+/// The least sine of an angle to a patch, at a hit with that normal, at which a ray meets it only once.
+double steep_from(const RayPatch& patch, const Vec3& normal) {
+    const Vec3 chord = chord_normal(patch);
+    const double turned = length(normal - (dot(chord, normal) < 0 ? -chord : chord));
+    return std::max(kGrazing * double{patch.bend}, kTurns * turned);
 }
 
 }  // namespace
@@ -265,7 +276,7 @@ void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, cons
     const Vec3& w = candidate.weights;
     const auto hit = solve(w.x * patch.uv[0] + w.y * patch.uv[1] + w.z * patch.uv[2]);
     const bool steep =
-        hit && std::fabs(dot(hit->point.normal, frame.z)) * patch.size > kGrazing * patch.stray;
+        hit && std::fabs(dot(hit->point.normal, frame.z)) > steep_from(patch, hit->point.normal);
     if (steep) return;
 
     // Near a silhouette a patch is met twice, and the hit found may be the farther one.
@@ -304,7 +315,7 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
             data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
                 if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
                 first = hit;
-                if (hit.point.normal == Vec3(0)) first->point.normal = chord_normal(patch);
+                if (hit.point.normal == Vec3(0)) first->point.normal = normal_for(surface, patch);
             });
         }
         tried = candidates.complete_to;

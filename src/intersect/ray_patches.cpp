@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/util/check.h"
 
@@ -25,30 +27,101 @@ PointBall ball_of(const RayPatch& patch) {
     return {ball.middle, kBallRoom * (ball.radius + patch.stray)};
 }
 
-}  // namespace
+/// The middles of edges, edge k from corner k to the next, and of the facet.
+constexpr std::array<Vec3, 4> kStraySamples{Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5),
+                                            Vec3(1.0 / 3)};
 
-RayPatch make_ray_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet) {
+/// How far a place of the surface lies off a facet: to go along the facet, or along the edge that the place
+/// belongs to, is not to stray.
+class FacetStray {
+  public:
+    explicit FacetStray(const RayPatch& patch) : patch_(patch), normal_(chord_normal(patch)) {
+        for (std::size_t k = 0; k < 3; ++k)
+            out_[k] = normalize_or_zero(cross(patch.corner[(k + 1) % 3] - patch.corner[k], normal_));
+    }
+
+    /// Takes what stands for that sample; `chord` would, were the patch flat and evenly parameterised.
+    void add(std::size_t sample, const Vec3& chord, const Vec3& place) {
+        const Vec3 off = place - chord;
+        if (normal_ == Vec3(0)) {
+            off_plane_ = stray_ = std::max(stray_, length(off));
+            return;
+        }
+        const double off_plane = std::fabs(dot(off, normal_));
+        double beyond = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double over = dot(place - patch_.corner[k], out_[k]);
+            beyond = std::max(beyond, k == sample ? std::fabs(over) : over);
+        }
+        off_plane_ = std::max(off_plane_, off_plane);
+        stray_ = std::max(stray_, std::hypot(off_plane, beyond));
+    }
+    double stray() const { return stray_; }
+    double off_plane() const { return off_plane_; }
+
+  private:
+    const RayPatch& patch_;
+    Vec3 normal_;
+    std::array<Vec3, 3> out_;  // of the edges, in the facet's plane
+    double stray_ = 0, off_plane_ = 0;
+};
+
+/// Where the surface is at the middles of edges, which facets of a grid share.
+class EdgeMiddles {
+  public:
+    template <typename Make>
+    const Vec3& of(Id a, Id b, const Make& make) {
+        const std::pair<Id, Id> edge = std::minmax(a, b);
+        const auto known =
+            std::find_if(known_.begin(), known_.end(), [&](const Middle& one) { return one.edge == edge; });
+        if (known != known_.end()) return known->place;
+        known_.push_back({edge, make()});
+        return known_.back().place;
+    }
+
+  private:
+    struct Middle {
+        std::pair<Id, Id> edge;
+        Vec3 place;
+    };
+    std::vector<Middle> known_;  // few
+};
+
+RayPatch make_patch_between(const Surface& surface, const SurfaceGrid& grid, std::size_t facet,
+                            EdgeMiddles& middles) {
     RayPatch patch;
     patch.face = grid.facet_face[facet];
     patch.uv = grid.facet_uv[facet];
     for (int k = 0; k < 3; ++k) patch.corner[k] = grid.points[grid.corner_point[grid.facets[facet][k]]];
 
-    constexpr double third = 1.0 / 3;
-    constexpr std::array<std::array<double, 3>, 4> samples{
-        {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {third, third, third}}};
-    for (const auto& [a, b, c] : samples) {
-        const Vec3 chord = a * patch.corner[0] + b * patch.corner[1] + c * patch.corner[2];
-        const Vec2 uv = a * patch.uv[0] + b * patch.uv[1] + c * patch.uv[2];
-        patch.stray =
-            std::max(patch.stray, length(surface.eval_first_order(patch.face, uv).position - chord));
+    FacetStray stray(patch);
+    for (std::size_t i = 0; i < kStraySamples.size(); ++i) {
+        const Vec3& w = kStraySamples[i];
+        const Vec3 chord = w.x * patch.corner[0] + w.y * patch.corner[1] + w.z * patch.corner[2];
+        const Vec2 uv = w.x * patch.uv[0] + w.y * patch.uv[1] + w.z * patch.uv[2];
+        const auto place = [&] { return surface.eval_first_order(patch.face, uv).position; };
+        const IdTriple& corners = grid.facets[facet];
+        stray.add(i, chord, i < 3 ? middles.of(corners[i], corners[(i + 1) % 3], place) : place());
     }
     for (int k = 0; k < 3; ++k) {
         const Vec2 edge = glm::abs(patch.uv[k] - patch.uv[(k + 1) % 3]);
         patch.size = std::max(patch.size, length(patch.corner[k] - patch.corner[(k + 1) % 3]));
         patch.reach = std::max({patch.reach, edge.x, edge.y});
     }
-    patch.stray = kRayStraySafety * patch.stray + kSurfaceResidual * largest_part(patch.corner[0]);
+    if (patch.size > 0) patch.bend = static_cast<float>(kRayStraySafety * stray.off_plane() / patch.size);
+    patch.stray = kRayStraySafety * stray.stray() + kSurfaceResidual * largest_part(patch.corner[0]);
     return patch;
+}
+
+}  // namespace
+
+RayPatch make_ray_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet) {
+    EdgeMiddles middles;
+    return make_patch_between(surface, grid, facet, middles);
+}
+
+Vec3 chord_normal(const RayPatch& patch) {
+    return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
 }
 
 Box box_of(const RayPatch& patch) {
@@ -63,8 +136,9 @@ const PartPatches::Part& PartPatches::make(Id part) const {
     const std::size_t count = grid.facets.size();
     made->patches.reserve(count);
     made->balls = PatchBalls(count);
+    EdgeMiddles middles;
     for (std::size_t f = 0; f < count; ++f) {
-        made->patches.push_back(make_ray_patch(surface_, grid, f));
+        made->patches.push_back(make_patch_between(surface_, grid, f, middles));
         made->balls.set(f, ball_of(made->patches.back()));
     }
     // Another thread may have made the same meanwhile.

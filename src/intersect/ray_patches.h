@@ -27,11 +27,15 @@ struct RayPatch {
     double size = 0;   // longest edge
     std::array<Vec2, 3> uv;
     Id face = kNone;
+    float bend = 0;    // the surface lies within this share of the size of the facet's plane
     double reach = 0;  // largest extent in u or v
 };
 
 /// Of that facet of a grid of the surface, by samples of the surface.
 RayPatch make_ray_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet);
+
+/// Of the facet, unit; zero where it has none.
+Vec3 chord_normal(const RayPatch& patch);
 
 /// Holds the facet and what strays from it.
 Box box_of(const RayPatch& patch);
