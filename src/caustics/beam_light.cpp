@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "caustics/flux_ends.h"
 #include "caustics/footprint.h"
 #include "caustics/plane_beams.h"
 #include "caustics/refined_beams.h"
@@ -50,6 +51,10 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
 }
 
 BeamLight::~BeamLight() = default;
+
+FluxEnds BeamLight::flux_ends() const {
+    return trilens::flux_ends(*refined_, beams_);
+}
 
 void BeamLight::receive_on(std::shared_ptr<const ReceiverFaces> faces) {
     faces_ = std::move(faces);

@@ -20,6 +20,7 @@
 namespace trilens {
 
 class PlaneBeams;
+struct FluxEnds;
 class RefinedBeams;
 
 /// What was left out of a light's beams.
@@ -70,6 +71,7 @@ class BeamLight {
     std::vector<ExactArrival> exact_arrivals(const Receiver& receiver) const;
 
     const Beams& beams() const { return beams_; }
+    FluxEnds flux_ends() const;
     const BeamLosses& losses() const { return losses_; }
 
   private:

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "base/util/parallel.h"
+#include "caustics/flux_ends.h"
 #include "inverse/maps/caustic_map.h"
 #include "render/project/project.h"
 #include "render/shoot/shoot.h"
@@ -83,7 +84,8 @@ TEST_CASE("no light is lost on its way through a glass ball", "[laws][law][caust
     const double sine2 = 0.8 * 0.8 / (3 * 3 + 3 * 3),
                  solid_angle = 2 * 3.14159265358979 * (1 - std::sqrt(1 - sine2));
     CHECK(beams.flux_arriving().y == Approx(10 * solid_angle).epsilon(1e-3));
-    const double out = beams.flux_on_objects().y + beams.flux_away().y;
+    const FluxEnds ends = lit.light().flux_ends();
+    const double out = ends.on_objects.y + ends.away.y;
     CHECK(out == Approx(beams.flux_arriving().y).epsilon(0.01));  // paths below a 200th are not followed
 
     // A map has the same flux at any size: footprints share beams out.

@@ -56,10 +56,6 @@ struct Beams {
     std::vector<Vec3> flux_by_history() const;
     /// Light that comes to the first optics.
     Vec3 flux_arriving() const;
-    /// Of the light of all stretches what ends on objects, before absorption on the last one, and what goes
-    /// away from the scene.
-    Vec3 flux_on_objects() const;
-    Vec3 flux_away() const;
 };
 
 /// A beam's part of the film times the mean of of(end) over its ends.

@@ -4,6 +4,7 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
+#include "caustics/flux_ends.h"
 #include "render/world/world.h"
 #include "shade/shade.h"
 
@@ -99,8 +100,9 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
     for (const auto& light : lights) {
         const Beams& beams = light->beams();
         map.flux_in += beams.flux_arriving();
-        map.flux_on_objects += beams.flux_on_objects();
-        map.flux_away += beams.flux_away();
+        const FluxEnds ends = light->flux_ends();
+        map.flux_on_objects += ends.on_objects;
+        map.flux_away += ends.away;
         map.beams += beams.beams.size();
         map.histories += beams.histories.size();
         map.coarse += light->losses().coarse;

@@ -1,0 +1,105 @@
+#include "caustics/flux_ends.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/util/parallel.h"
+
+namespace trilens {
+namespace {
+
+/// Halvings of a beam's sides.
+constexpr int kMostEndHalvings = 6;
+/// A part that brings less than this share of what comes to the optics is shared out by its corners.
+constexpr double kFaintEnd = 1e-6;
+
+enum class EndKind { kObject, kAway, kOptic };
+
+EndKind kind_of(const BeamEnd& end) {
+    if (std::isfinite(end.object)) return EndKind::kObject;
+    return std::isfinite(end.optic) ? EndKind::kOptic : EndKind::kAway;
+}
+
+void add_to(FluxEnds& sum, EndKind kind, const Vec3& flux) {
+    if (kind == EndKind::kObject) sum.on_objects += flux;
+    if (kind == EndKind::kAway) sum.away += flux;
+}
+
+/// One beam's.
+class BeamFluxEnds {
+  public:
+    BeamFluxEnds(const RefinedBeams& refined, const Beams& beams, Id beam, double faint)
+        : refined_(refined), beams_(beams), beam_(beam), faint_(faint) {}
+
+    FluxEnds sum() {
+        const LightBeam& beam = beams_.beams[beam_];
+        const BeamEnds end = corners_of(beams_, beam).end;
+        const EndKind kind = kind_of(*end[0]);
+        if (kind_of(*end[1]) == kind && kind_of(*end[2]) == kind)
+            add_to(sum_, kind, beam.flux);
+        else
+            add(end, beams_.histories[beam.history].medium == kNone ? 0 : kMostEndHalvings);
+        return sum_;
+    }
+
+  private:
+    using Side = std::pair<Vec2, Vec2>;
+    struct Before {
+        bool operator()(const Vec2& a, const Vec2& b) const { return a.x != b.x ? a.x < b.x : a.y < b.y; }
+        bool operator()(const Side& a, const Side& b) const {
+            return a.first != b.first ? (*this)(a.first, b.first) : (*this)(a.second, b.second);
+        }
+    };
+
+    const BeamEnd* middle(const BeamEnd& a, const BeamEnd& b) {
+        const auto [low, high] = std::minmax(a.place, b.place, Before{});
+        const auto [known, is_new] = middles_.try_emplace({low, high});
+        if (is_new) {
+            known->second = refined_.middle(beam_, a, b);
+            refined_.look_ahead(beam_, known->second);
+        }
+        return &known->second;
+    }
+
+    void add(const BeamEnds& end, int level) {
+        const double measure = refined_.corners(beam_, end).measure;
+        Vec3 light(0);
+        for (const BeamEnd* one : end) light += measure / 3 * one->light;
+        const EndKind kind = kind_of(*end[0]);
+        if (kind_of(*end[1]) == kind && kind_of(*end[2]) == kind) return add_to(sum_, kind, light);
+        if (level == kMostEndHalvings || light.x + light.y + light.z < faint_) {
+            for (const BeamEnd* one : end) add_to(sum_, kind_of(*one), measure / 3 * one->light);
+            return;
+        }
+        const BeamEnds middles{middle(*end[1], *end[2]), middle(*end[2], *end[0]), middle(*end[0], *end[1])};
+        for (const BeamEnds& part : quarters(end, middles)) add(part, level + 1);
+    }
+
+    const RefinedBeams& refined_;
+    const Beams& beams_;
+    const Id beam_;
+    const double faint_;
+    FluxEnds sum_;
+    std::map<Side, BeamEnd, Before> middles_;  // neighbouring parts share them
+};
+
+}  // namespace
+
+FluxEnds flux_ends(const RefinedBeams& refined, const Beams& beams) {
+    const Vec3 arriving = beams.flux_arriving();
+    const double faint = kFaintEnd * (arriving.x + arriving.y + arriving.z);
+    std::vector<FluxEnds> of_beam(beams.beams.size());
+    parallel_for(of_beam.size(), 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i)
+            of_beam[i] = BeamFluxEnds(refined, beams, static_cast<Id>(i), faint).sum();
+    });
+    FluxEnds all;
+    for (const FluxEnds& one : of_beam) all.on_objects += one.on_objects, all.away += one.away;
+    return all;
+}
+
+}  // namespace trilens

@@ -1,0 +1,18 @@
+// Where a light's beams end: on objects, or out of the scene.
+#pragma once
+
+#include "caustics/refined_beams.h"
+
+namespace trilens {
+
+/// Lumen, or watt, as the light's intensity has it.
+struct FluxEnds {
+    Vec3 on_objects{0};  // of the light of all stretches what ends on objects, before absorption on the last one
+    Vec3 away{0};        // what goes away from the scene
+};
+
+/// `refined`: of these beams. A beam whose rays do not all end alike is divided by exact rays; one in a
+/// body of glass is shared out by its corners.
+FluxEnds flux_ends(const RefinedBeams& refined, const Beams& beams);
+
+}  // namespace trilens
