@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/math/luminance.h"
+#include "caustics/flux_ends.h"
 #include "shade/shade.h"
 #include "support/draw.h"
 #include "support/lit_world.h"
@@ -29,12 +30,12 @@ Receiver square_on_floor(double x, double z, double side) {
     return receiver;
 }
 
-/// That falls on the floor, square by square.
-double flux(const LitWorld& lit) {
+/// That falls on the floor, square by square, up to so many from its middle.
+double flux(const LitWorld& lit, int squares = 50) {
     constexpr double kSide = 0.1;
     double sum = 0;
-    for (int j = -50; j < 50; ++j)
-        for (int i = -50; i < 50; ++i)
+    for (int j = -squares; j < squares; ++j)
+        for (int i = -squares; i < squares; ++i)
             sum += luminance(
                 irradiance(lit.lights, square_on_floor((i + 0.5) * kSide, (j + 0.5) * kSide, kSide)));
     return kSide * kSide * sum;
@@ -77,4 +78,27 @@ TEST_CASE("light that turns around in a ring more often than any corner's is fou
     const LitWorld usual(lit_world(ring, sun)), much(lit_world(ring, sun), fine);
     CHECK(usual.light().beams().histories.size() == 5);
     CHECK(flux(usual) == Approx(flux(much)).epsilon(4e-4));
+}
+
+// Each ball shows the others in bands, and those in narrower bands, that no corner of the light's film needs
+// to lie in.
+TEST_CASE("no light is lost between three mirror balls", "[laws][law][caustics]") {
+    std::string balls;
+    for (const char* center : {"-0.62,0.8,0", "0.62,0.8,0", "0,0.8,-1.05"})
+        balls +=
+            (balls.empty() ? "" : ", ") +
+            (R"({"name": "ball )" + std::string(center) +
+             R"(", "role": "optic", "material": "mirror", "resolution": 8, "primitive": {"type": "sphere", "center": [)") +
+            center + R"(], "radius": 0.6}})";
+    std::unique_ptr<World> world = lit_world(
+        balls, R"({"type": "point", "position": [1.6, 4.2, 1.4], "intensity": 26, "caustics": true})");
+    world->scene.render.max_depth = 8;
+    const LitWorld lit(std::move(world));
+    const FluxEnds ends = lit.light().flux_ends();
+    const double in = lit.light().beams().flux_arriving().y, out = ends.on_objects.y + ends.away.y;
+    CHECK(in > 1);
+    CHECK(std::fabs(in - out) < 1e-3 * in);
+
+    // What is said to end on the floor comes to it.
+    CHECK(flux(lit, 60) == Approx(ends.on_objects.y).epsilon(1e-3));
 }

@@ -23,6 +23,9 @@ constexpr double kMostBends = 4;
 /// What is spread until it is this share of what is faint may fall where it will.
 constexpr double kLetBe = 0.05;
 
+/// Beyond the most triangles, this part of them is kept for those in which histories hide.
+constexpr std::size_t kReserve = 4;
+
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
 
@@ -281,6 +284,7 @@ void BeamGrid::divide_all(std::vector<Id> asked, const Progress& progress) {
 void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
     params_ = params;
     tolerance_ = params.tolerance * space_.size;
+    most_triangles_ = params.most_triangles;
     start(params.first_cells);
     std::vector<Id> all(triangles_.size());
     std::iota(all.begin(), all.end(), Id{0});
@@ -288,6 +292,7 @@ void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
 }
 
 bool BeamGrid::divide_more(std::span<const Id> triangles, const Progress& progress) {
+    most_triangles_ = params_.most_triangles + params_.most_triangles / kReserve;
     const std::vector<Id> halves = split_where_room(triangles);
     divide_all(halves, progress);
     return !halves.empty();

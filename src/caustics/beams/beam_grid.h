@@ -24,7 +24,7 @@ struct BeamGridParams {
     int most_levels = 11;     // bisections of one of its triangles
     int mixed_levels = 4;     // of one whose corners have different histories
     double tolerance = 1e-3;  // how far light may fall from its place, as a share of the scene's size
-    std::size_t most_triangles = 16'000;
+    std::size_t most_triangles = 16'000;  // and a quarter more where histories hide
 };
 
 /// Triangles over one window; the bases of two triangles that share one are equal, so no corner lies on
@@ -97,7 +97,7 @@ class BeamGrid {
     void follow_tears(const Progress& progress);
     std::vector<Id> torn_oddly() const;
     bool has_room(Id triangle) const {
-        return triangles_[triangle].level < params_.most_levels && triangles_.size() < params_.most_triangles;
+        return triangles_[triangle].level < params_.most_levels && triangles_.size() < most_triangles_;
     }
     std::vector<Id> split_marked(std::span<const Id> triangles, std::span<const char> marked);
     std::vector<Id> split_where_room(std::span<const Id> triangles);
@@ -123,6 +123,7 @@ class BeamGrid {
     std::vector<Id> node_of_;  // triangle
     Id root_count_ = 0;
     double tolerance_ = 0;
+    std::size_t most_triangles_ = 0;
     std::unordered_map<Edge, std::array<Id, 2>> sides_;  // triangles on both sides
     std::unordered_map<Edge, Id> middles_;
     std::map<SideHistory, std::optional<HistoryTear>> tears_;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "caustics/beams/beams.h"
-#include "caustics/beams/history_borders.h"
+#include "caustics/beams/hidden_histories.h"
 #include "caustics/beams/merged_beams.h"
 #include "caustics/beams/quadratic.h"
 
@@ -345,8 +345,7 @@ void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
 void BeamMaker::make(const Progress& progress) {
     beams_.windows.push_back(grid_.window());
     histories_.find_borders(progress);
-    const Progress end = progress.part(1, 0);
-    while (grid_.divide_more(histories_.triangles_that_hide(), end)) histories_.find_borders(end);
+    find_hidden_histories(grid_, histories_, progress.part(1, 0));
     const std::size_t first_end = beams_.ends.size(), first_beam = beams_.beams.size();
     merge_ = {grid_.tolerance(), grid_.scene_size(), grid_.brightest(), kFaintShare * grid_.mean_arriving()};
     std::vector<Id> all(beams_.histories.size());

@@ -14,6 +14,8 @@ namespace {
 constexpr int kBisections = 12;
 /// What lies behind a border is looked for where both carry this share of the brightest path.
 constexpr double kHiddenLight = 0.1;
+/// Borders bend: a history is looked for beyond them from so many times their distance from its corner on.
+constexpr double kWellBeyond = 1.25;
 
 /// Borders of one side that bisection has not told apart yet.
 struct BorderSearch {
@@ -185,6 +187,49 @@ std::vector<Id> GridHistories::triangles_that_hide() const {
             }
     }
     return found;
+}
+
+bool GridHistories::is_mixed(const BeamGrid::Triangle& triangle) const {
+    const double least = kHiddenLight * grid_.brightest();
+    const auto lacks = [&](Id corner, const LightPath& path) {
+        return strength_of(path.light) >= least && !find_history(grid_.paths(corner), path);
+    };
+    for (const Id one : triangle.corner)
+        for (const Id other : triangle.corner)
+            if (one != other && std::any_of(grid_.paths(one).begin(), grid_.paths(one).end(),
+                                            [&](const LightPath& path) { return lacks(other, path); }))
+                return true;
+    return false;
+}
+
+bool GridHistories::hides_at(const BeamGrid::Triangle& triangle, const Vec3& weights) const {
+    const auto& corner = triangle.corner;
+    const double least = kHiddenLight * grid_.brightest();
+    const auto is_hidden = [&](const LightPath& path) {
+        if (strength_of(path.light) < least) return false;
+        std::size_t count = 0, inside = 0;
+        const LightPath* there = nullptr;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const LightPath* at = find_history(grid_.paths(corner[k]), path))
+                ++count, inside = k, there = at;
+        if (count != 1) return count == 0;
+        // The corner's part of the triangle is where the other two's weights, each over its share of the side
+        // up to the border, add up to less than 1.
+        const std::vector<LightPath>& paths = grid_.paths(corner[inside]);
+        const Id history = at_corner_[corner[inside]][static_cast<std::size_t>(there - paths.data())];
+        const Vec2 from = grid_.place(corner[inside]);
+        double sum = 0;
+        for (const std::size_t turn : {1, 2}) {
+            const std::size_t k = (inside + turn) % 3;
+            const Vec2 to_border = border(corner[inside], corner[k], history).place - from;
+            sum += weights[static_cast<int>(k)] * length(grid_.place(corner[k]) - from) / length(to_border);
+        }
+        return sum > kWellBeyond;
+    };
+    const Vec2 place = weights.x * grid_.place(corner[0]) + weights.y * grid_.place(corner[1]) +
+                       weights.z * grid_.place(corner[2]);
+    const LightPaths found = grid_.paths_at(place);
+    return std::any_of(found.paths.begin(), found.paths.end(), is_hidden);
 }
 
 const HistoryBorder* GridHistories::border_between(Id inside, Id outside, Id history) const {

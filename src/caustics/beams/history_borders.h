@@ -33,6 +33,11 @@ class GridHistories {
     /// The triangles on one of whose sides a history lies hidden between two others, brighter than a share of
     /// the brightest path.
     std::vector<Id> triangles_that_hide() const;
+    /// Whether a triangle's corners have different histories of such as could hide.
+    bool is_mixed(const BeamGrid::Triangle& triangle) const;
+    /// Whether at a place in a triangle, weights of its corners, is such a history that no corner has, or one
+    /// corner, and well beyond its borders.
+    bool hides_at(const BeamGrid::Triangle& triangle, const Vec3& weights) const;
 
     /// Of a corner; null: it has not that history.
     const LightPath* path_at(Id corner, Id history) const;
