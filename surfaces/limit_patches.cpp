@@ -139,36 +139,6 @@ std::unique_ptr<const KindPoints> make_kind_points(const Bfr::Surface<double>& s
     return std::make_unique<KindPoints>(KindPoints{std::move(rows), SubPatches(domain, depth, used)});
 }
 
-/// The kinds of a cage's faces that many have.
-class ManyKinds {
-  public:
-    /// Of the face whose `surface` has that kind; none where few faces have been of it until now, or it has
-    /// very many points.
-    const KindPoints* of(std::uint64_t kind, const Bfr::Surface<double>& surface, FaceDomain domain,
-                         int depth) {
-        constexpr int kMany = 64;          // take as long as what all have in common
-        constexpr int kMostPoints = 1200;  // while it is made it takes their square
-        if (surface.GetNumPatchPoints() > kMostPoints) return nullptr;
-        const std::lock_guard lock(mutex_);
-        Kind& known = kinds_[kind];
-        if (!known.points && ++known.asked > kMany) {
-            known.points = make_kind_points(surface, domain, depth);
-            bytes_ += known.points->bytes();
-        }
-        return known.points.get();
-    }
-    std::size_t bytes() const { return bytes_; }
-
-  private:
-    struct Kind {
-        int asked = 0;
-        std::unique_ptr<const KindPoints> points;
-    };
-    std::mutex mutex_;
-    std::map<std::uint64_t, Kind> kinds_;
-    std::atomic<std::size_t> bytes_{0};
-};
-
 /// One face's limit surface with its patch points, relative to `origin` so that small faces far away stay
 /// exact.
 struct Patch {
@@ -186,8 +156,11 @@ struct Patch {
     }
 };
 
+/// Bytes of what the kinds of a dense mesh have in common.
+constexpr std::size_t kKindBudget = kMostPatchBytes / 9;
 /// Bytes of patches: the first ones asked for, and the latest of the others.
-constexpr BoundedCache<Patch>::Budget kPatchBudget{kMostPatchBytes / 9 * 6, kMostPatchBytes / 9};
+constexpr BoundedCache<Patch>::Budget kPatchBudget{kMostPatchBytes / 9 * 6, kMostPatchBytes / 9},
+    kDensePatchBudget{kPatchBudget.kept - kKindBudget, kPatchBudget.recent};
 
 /// The patch points of more faces of the mesh do not fit into that, at some 12 kB.
 constexpr int kDense = 20'000;
@@ -201,7 +174,7 @@ struct LimitPatches::Impl {
     FaceDomain domain;
     bool is_dense;         // has so many faces that not all of their patch points could be kept
     std::uint64_t number;  // of this surface, and of no other
-    ManyKinds kinds;
+    ManyKinds kinds{kKindBudget};
     BoundedCache<Patch> patches;  // per face of the mesh
 
     Impl(PatchMesh made, const CheckedCage& cage)
@@ -211,7 +184,8 @@ struct LimitPatches::Impl {
           domain(mesh.tree.triangles ? FaceDomain::kTriangle : FaceDomain::kSquare),
           is_dense(factory.GetNumFaces() > kDense),
           number(next_number()),
-          patches(static_cast<std::size_t>(factory.GetNumFaces()), kPatchBudget) {}
+          patches(static_cast<std::size_t>(factory.GetNumFaces()),
+                  is_dense ? kDensePatchBudget : kPatchBudget) {}
 
     static std::uint64_t next_number() {
         static std::atomic<std::uint64_t> last{0};
@@ -246,11 +220,18 @@ struct LimitPatches::Impl {
         patch.origin = mesh.points[first_control(patch.surface)];
         gather_controls(patch, points.data());
         for (std::size_t k = 0; k < controls; ++k) patch.extent = std::max(patch.extent, std::abs(points[k]));
-        if (is_dense && patch.kind) patch.by_kind = kinds.of(*patch.kind, patch.surface, domain, depth());
+        if (is_dense && patch.kind) patch.by_kind = kind_points(*patch.kind, patch.surface);
         if (patch.by_kind || (is_dense && count == controls)) return patch;
         patch.surface.ComputePatchPoints(points.data(), 3);
         patch.points = points;
         return patch;
+    }
+
+    /// None where few faces have been of the kind until now, or it has very many points.
+    const KindPoints* kind_points(std::uint64_t kind, const Bfr::Surface<double>& surface) {
+        constexpr int kMostPoints = 1200;  // while what they have in common is made it takes their square
+        if (surface.GetNumPatchPoints() > kMostPoints) return nullptr;
+        return kinds.of(kind, [&] { return make_kind_points(surface, domain, depth()); });
     }
 
     static int first_control(const Bfr::Surface<double>& surface) {

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +27,38 @@ struct KindPoints {
     std::size_t bytes() const {
         return sizeof(KindPoints) + rows.capacity() * sizeof(double) + sub_patches.bytes();
     }
+};
+
+/// The kinds of a cage's faces that many have: as many of them as fit into a budget of bytes, but for one.
+/// Thread-safe.
+class ManyKinds {
+  public:
+    explicit ManyKinds(std::size_t budget) : budget_(budget) {}
+
+    /// What make() says of the kind, once it has been asked for often, and for good; none until then, and
+    /// where the budget is full.
+    template <class Make>
+    const KindPoints* of(std::uint64_t kind, const Make& make) {
+        constexpr int kMany = 64;  // take as long as what all have in common
+        const std::lock_guard lock(mutex_);
+        Kind& known = kinds_[kind];
+        if (!known.points && ++known.asked > kMany && bytes_ < budget_) {
+            known.points = make();
+            bytes_ += known.points->bytes();
+        }
+        return known.points.get();
+    }
+    std::size_t bytes() const { return bytes_; }
+
+  private:
+    struct Kind {
+        std::uint64_t asked = 0;
+        std::unique_ptr<const KindPoints> points;
+    };
+    std::size_t budget_;
+    std::mutex mutex_;
+    std::map<std::uint64_t, Kind> kinds_;
+    std::atomic<std::size_t> bytes_{0};
 };
 
 /// The points of some sub-patches of one face, in the places that they have among all of its patch points:

@@ -1,15 +1,20 @@
-// Dense triangle cages: a bounded number of bytes, the same points, and a refusal before it is too much.
+// Dense cages, and those of many kinds of faces: a bounded number of bytes, the same points, and a refusal
+// before it is too much.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "reference_subdivision.h"
 #include "support/test.h"
+#include "surfaces/patch_mesh.h"
 #include "surfaces/surfaces.h"
 #include "test_cages.h"
 
@@ -97,6 +102,74 @@ std::vector<Vec2> places_of_all_depths() {
     return places;
 }
 
+void append(Cage& cage, const Cage& other, const Vec3& offset) {
+    const int first = static_cast<int>(cage.points.size());
+    const auto add = [first](std::vector<int>& indices, const std::vector<int>& more) {
+        for (const int index : more) indices.push_back(first + index);
+    };
+    for (const Vec3& p : other.points) cage.points.push_back(p + offset);
+    cage.face_vertex_counts.insert(cage.face_vertex_counts.end(), other.face_vertex_counts.begin(),
+                                   other.face_vertex_counts.end());
+    add(cage.face_vertex_indices, other.face_vertex_indices);
+    add(cage.crease_indices, other.crease_indices);
+    cage.crease_lengths.insert(cage.crease_lengths.end(), other.crease_lengths.begin(),
+                               other.crease_lengths.end());
+    cage.crease_sharpnesses.insert(cage.crease_sharpnesses.end(), other.crease_sharpnesses.begin(),
+                                   other.crease_sharpnesses.end());
+}
+
+constexpr int kSpokes = 40, kCreasedWheels = 27, kPlainWheels = 3;
+
+/// Wheels with a crease along one spoke, each of a sharpness of its own (a float): no two of their faces have
+/// a tree of patches of 0.7 MB in common. Then wheels without, whose faces are all of one kind, and a sheet.
+Cage wheels_and_sheet(int sheet_side) {
+    Cage cage;
+    for (int k = 0; k < kCreasedWheels + kPlainWheels; ++k) {
+        Cage one = wheel(kSpokes);
+        if (k < kCreasedWheels) add_crease(one, {0, 1}, 0.25 + k / 64.0);
+        append(cage, one, Vec3(3 * k, 0, 0));
+    }
+    append(cage, sheet(sheet_side, sheet_side), Vec3(0, 3, 0));
+    return cage;
+}
+
+/// What a surface answered when it was first asked, at a few places per face.
+struct FirstAnswers {
+    static constexpr std::array<Vec2, 3> kPlaces = {Vec2(0.3, 0.6), Vec2(0x1p-5, 0x1p-8), Vec2(0, 0.9)};
+    std::vector<std::array<SurfacePoint, kPlaces.size()>> at;
+
+    void ask(const Surface& surface, Id face) {
+        auto& answers = at.emplace_back();
+        for (std::size_t k = 0; k < kPlaces.size(); ++k) answers[k] = surface.eval(face, kPlaces[k]);
+    }
+    bool are_given_again(const Surface& surface, Id face) const {
+        for (std::size_t k = 0; k < kPlaces.size(); ++k)
+            if (!are_same(surface.eval(face, kPlaces[k]), at[face][k])) return false;
+        return true;
+    }
+};
+
+/// Limit points of each face's corners, from the reference refined once: creases of less than 1 are gone
+/// there.
+std::vector<std::array<Vec3, 4>> limits_of_corners(const Cage& cage) {
+    const ReferenceMesh mesh = refine(reference_mesh(cage));
+    std::vector<std::array<Vec3, 4>> limits(cage.face_vertex_counts.size());
+    for (const ReferenceMesh::Face& part : mesh.faces)
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t corner = 0; corner < 4; ++corner)
+                if (part.uv[k] == kCorners[corner])
+                    limits[static_cast<std::size_t>(part.cage_face)][corner] =
+                        *limit_point(mesh, part.vertices[k]);
+    return limits;
+}
+
+double farthest_off(const Surface& surface, Id face, const std::array<Vec3, 4>& limits) {
+    double worst = 0;
+    for (std::size_t corner = 0; corner < 4; ++corner)
+        worst = std::max(worst, length(surface.eval(face, kCorners[corner]).position - limits[corner]));
+    return worst;
+}
+
 }  // namespace
 
 TEST_CASE("A dense cage's face is the same from a few patch points as from all of them", "[surfaces][law]") {
@@ -169,6 +242,53 @@ TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 80 MB
     for (Id face = 0; face < surface->face_count(); face += 17)
         REQUIRE(are_same(surface->eval(face, Vec2(0.3, 0.6)), first_time[face]));
     CHECK(static_cast<double>(surface->bytes_held()) < kMost);
+}
+
+TEST_CASE("Once the budget of patches is full, they are made again, bit for bit, on any thread",
+          "[surfaces][law]") {
+    constexpr Id kCreased = kCreasedWheels * kSpokes, kWheels = kCreased + kPlainWheels * kSpokes;
+    constexpr double kBudget = static_cast<double>(kMostPatchBytes);
+    // The larger one is dense: the faces of its plain wheels are made of few points.
+    for (const int sheet_side : {4, 145}) {
+        CAPTURE(sheet_side);
+        const Cage cage = wheels_and_sheet(sheet_side);
+        const auto surface = make_limit_surface(cage, "wheels", {}, 1e9);
+        const Id count = static_cast<Id>(surface->face_count());
+        REQUIRE(count == cage.face_vertex_counts.size());
+        const double at_first = static_cast<double>(surface->bytes_held());
+        const auto held = [&] { return static_cast<double>(surface->bytes_held()) - at_first; };
+        const auto limits = limits_of_corners(cage);
+
+        double worst = 0, most = 0, filled = 0;
+        FirstAnswers first;
+        for (Id face = 0; face < count; ++face) {
+            worst = std::max(worst, farthest_off(*surface, face, limits[face]));
+            first.ask(*surface, face);
+            if (face % 16 == 0) most = std::max(most, held());
+            if (face == kCreased - 4 * kSpokes) filled = held();
+            // Patches of 160 faces, 0.7 MB each, have been made since it was full.
+            if (face == kCreased - 1) CHECK(std::fabs(held() - filled) < 1e6);
+        }
+        CHECK(filled > 0.8 * kBudget);
+
+        // Faces whose patches stayed, and others whose patches must be made once more.
+        for (Id face = 0; face < count; face += face < kWheels ? 7 : 101) {
+            CAPTURE(face);
+            REQUIRE(first.are_given_again(*surface, face));
+            worst = std::max(worst, farthest_off(*surface, face, limits[face]));
+        }
+        CHECK(worst < 1e-12);
+        std::atomic<int> others = 0;
+        parallel_for(4, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t task = begin; task < end; ++task) {
+                std::mt19937 random(static_cast<unsigned>(task));
+                for (int i = 0; i < 150; ++i)
+                    others += !first.are_given_again(*surface, random() % (i % 2 ? kWheels : count));
+            }
+        });
+        CHECK(others == 0);
+        CHECK(std::max(most, held()) < kBudget);
+    }
 }
 
 TEST_CASE("What would not fit is refused with the estimate and what to do", "[surfaces][bad-input]") {
