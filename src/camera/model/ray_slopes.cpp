@@ -35,7 +35,7 @@ void add_product(RaySlopes& sum, const WeightSlopes& weight, const RaySlopes& ra
 }
 
 MissSlopes miss_slopes(const RaySlopes& rays, const Vec3& point) {
-    const auto& [origin, direction] = rays.corner;
+    const Vec3 &origin = rays.corner.origin, &direction = rays.corner.direction;
     const Vec3 from = point - origin;
     const double square = dot(direction, direction), t = dot(from, direction) / square,
                  share = 1 / std::max(std::fabs(t), kNearestMiss), sign = t < 0 ? -1 : 1;
