@@ -200,6 +200,7 @@ void bind_caustic(RendererClass& renderer) {
             made["flux_received"] = numbers(map.flux_received);
             made["beams"] = map.beams;
             made["coarse"] = map.coarse;
+            made["warnings"] = map.warnings;
             return made;
         },
         py::arg("onto"), py::arg("light") = 0, py::kw_only(), py::arg("back") = false,
@@ -217,7 +218,7 @@ void bind_caustic(RendererClass& renderer) {
         "from "
         "the light to the\noptics, flux_on_objects and flux_away, from there, and flux_received, in the map, "
         "each three colours; beams;\ncoarse, the parts of the light that the tolerance would have divided "
-        "further.\n"
+        "further; warnings, what is left out.\n"
         "Raises UsageError for a light that is none or has no rays of its own, and targets that are none.");
 }
 

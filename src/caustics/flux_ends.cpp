@@ -39,10 +39,13 @@ class BeamFluxEnds {
         const LightBeam& beam = beams_.beams[beam_];
         const BeamEnds end = corners_of(beams_, beam).end;
         const EndKind kind = kind_of(*end[0]);
-        if (kind_of(*end[1]) == kind && kind_of(*end[2]) == kind)
-            add_to(sum_, kind, beam.flux);
-        else
+        if (kind_of(*end[1]) == kind && kind_of(*end[2]) == kind) {
+            // Exact for quadratic light: at a rim, where Fresnel's weights are steep, corners say too much.
+            for (const BeamEnd* middle : refined_.side_middles(beam_))
+                add_to(sum_, kind, beam.measure / 3 * middle->light);
+        } else {
             add(end, beams_.histories[beam.history].medium == kNone ? 0 : kMostEndHalvings);
+        }
         return sum_;
     }
 

@@ -39,9 +39,7 @@ Answer run_caustic(const CausticOptions& options, Console& console) {
     const CausticMap map = make_caustic_map(renderer, request, console.progress("caustic"));
     const double seconds = watch.seconds();
     write_image(options.output, image_of(map));
-    if (map.coarse > 0)
-        console.warn(
-            fmt::format("{} parts of the light's film are coarser than --tolerance asks", map.coarse));
+    for (const std::string& message : map.warnings) console.warn(message);
     Answer answer = name_output(options.output, console);
     answer.fields["light"] = options.light;
     answer.fields["width"] = map.width;

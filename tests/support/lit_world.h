@@ -25,7 +25,8 @@ inline std::unique_ptr<World> lit_world(const std::string& optic, const std::str
             "cameras": [{"yfov": 60, "lookAt": {"eye": [)" +
         std::to_string(eye.x) + "," + std::to_string(eye.y) + "," + std::to_string(eye.z) +
         R"(], "at": [0, 0.5, 0]}}],
-            "materials": [{"name": "white"}, {"name": "mirror", "metallicFactor": 1}, {"name": "glass", "transmissionFactor": 1, "ior": 1.5},
+            "materials": [{"name": "white"}, {"name": "mirror", "metallicFactor": 1},
+                {"name": "dim", "metallicFactor": 1, "baseColorFactor": [0.3, 0.3, 0.3]}, {"name": "glass", "transmissionFactor": 1, "ior": 1.5},
                 {"name": "veil", "alphaMode": "blend", "alphaFactor": 0.25}, {"name": "smoke", "alphaMode": "blend", "alphaFactor": 0.5}],
             "meshes": [)" +
         kFloor + ", " + optic + R"(], "lights": [)" + light + R"(], "render": {"maxDepth": 4}})";

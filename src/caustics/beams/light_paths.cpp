@@ -1,5 +1,8 @@
 #include "caustics/beams/light_paths.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace trilens {
 namespace {
 
@@ -49,8 +52,9 @@ LightPath continued(LightHistory so_far, const PathSegment& segment, const Vec3&
         path.arriving = Vec3(0);
         path.arriving[path.colours] = arriving[path.colours];
     }
-    path.optic = segment.next;
-    if (segment.hit.seen()) path.object = segment.hit.t;
+    // Light that comes to an optic after the last that is followed stops there.
+    path.optic = std::min(segment.next, segment.cut);
+    if (segment.hit.seen() && !std::isfinite(segment.cut)) path.object = segment.hit.t;
     return path;
 }
 

@@ -107,6 +107,13 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
         map.histories += beams.histories.size();
         map.coarse += light->losses().coarse;
     }
+    map.warnings = lost_light(world, request.light, lights);
+    if (map.coarse > 0)
+        map.warnings.push_back(std::to_string(map.coarse) +
+                               " parts of the light's film are coarser than the tolerance asks");
+    if (target.shares_coordinates())
+        map.warnings.push_back("faces of \"" + world.scene.meshes[request.target.object].name +
+                               "\" share texture coordinates: the map shows the light of one of them");
     progress(1);
     return map;
 }

@@ -2,6 +2,7 @@
 // plane.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/image/image.h"
@@ -33,7 +34,8 @@ struct CausticMap {
     Vec3 flux_away{0};             // from the optics out of the scene
     Vec3 flux_received{0};         // in the map
     std::size_t beams = 0, histories = 0;
-    std::size_t coarse = 0;  // parts of the light that the tolerance would have divided further
+    std::size_t coarse = 0;             // parts of the light that the tolerance would have divided further
+    std::vector<std::string> warnings;  // what the map leaves out, in words
 };
 
 /// Throws UsageError for a light that the scene does not have, or that has no rays of its own (ambient), a

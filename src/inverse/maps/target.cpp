@@ -139,10 +139,35 @@ Target::Target(const TargetDescription& description, const Scene& scene) : descr
     }
 }
 
+const std::vector<Id>& Target::triangles_near(const Vec2& uv) const {
+    const auto bin = [](double x) { return std::clamp(static_cast<int>(x * kBinSide), 0, kBinSide - 1); };
+    return bins_[static_cast<std::size_t>(bin(uv.y) * kBinSide + bin(uv.x))];
+}
+
+bool Target::shares_coordinates() const {
+    constexpr int kPlaces = 100;
+    constexpr double kWellInside = 1e-6;  // weights, so that neighbours share nothing along their edge
+    if (bins_.empty()) return false;
+    const auto is_inside = [&](Id triangle, const Vec2& uv) {
+        const auto& [a, b, c] = object_->uvs[triangle];
+        const double twice = cross2(b - a, c - a);
+        if (twice == 0) return false;
+        const double second = cross2(uv - a, c - a) / twice, third = cross2(b - a, uv - a) / twice;
+        return std::min({second, third, 1 - second - third}) > kWellInside;
+    };
+    for (int y = 0; y < kPlaces; ++y)
+        for (int x = 0; x < kPlaces; ++x) {
+            const Vec2 uv = (Vec2(x, y) + 0.5) / double(kPlaces);
+            const std::vector<Id>& near = triangles_near(uv);
+            if (std::count_if(near.begin(), near.end(), [&](Id one) { return is_inside(one, uv); }) > 1)
+                return true;
+        }
+    return false;
+}
+
 std::optional<TargetPlace> Target::object_place(const Vec2& pixel) const {
     const Vec2 uv(pixel.x / description_.width, 1 - pixel.y / description_.height);
-    const auto bin = [](double x) { return std::clamp(static_cast<int>(x * kBinSide), 0, kBinSide - 1); };
-    for (const Id t : bins_[static_cast<std::size_t>(bin(uv.y) * kBinSide + bin(uv.x))]) {
+    for (const Id t : triangles_near(uv)) {
         const auto& uvs = object_->uvs[t];
         const Vec2 &a = uvs[0], &b = uvs[1], &c = uvs[2];
         const double twice = cross2(b - a, c - a);

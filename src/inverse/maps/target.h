@@ -103,6 +103,9 @@ class Target {
     /// Where a point of the target's own plane or object lies. `triangle`: of the object, asked for where
     /// that is not flat.
     std::optional<Vec2> pixel_of_point(const Vec3& point, Id triangle) const;
+    /// Whether two triangles of an object that is not flat lie on the same texture coordinates, at some of
+    /// 100 x 100 places: of these place() knows one.
+    bool shares_coordinates() const;
     /// The rectangle, of a plane or a flat object.
     const std::optional<FlatRectangle>& rectangle() const { return rectangle_; }
 
@@ -111,6 +114,7 @@ class Target {
 
   private:
     std::optional<TargetPlace> object_place(const Vec2& pixel) const;
+    const std::vector<Id>& triangles_near(const Vec2& uv) const;
 
     TargetDescription description_;
     std::optional<FlatRectangle> rectangle_;

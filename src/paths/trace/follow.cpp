@@ -187,6 +187,7 @@ void Follower::run(const Pending& from) {
     if (rests && from.rested >= kMostRests) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
         followed_.cut.too_deep += light;
+        segment.cut = next->distance;
         if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
         next.reset();
     }

@@ -31,6 +31,8 @@ struct PathSegment {
     // Distance to an optic that lies on an object where it is met, or infinity; the object is what is seen
     // there.
     double rest = std::numeric_limits<double>::infinity();
+    // Distance to an optic that would be met after the last that is followed, or infinity: cameras see past it.
+    double cut = std::numeric_limits<double>::infinity();
     bool to_mirror = false;  // the next optic is one
     bool has_start = true;   // see has_start(), of its start
     bool front = true;       // its start was met from the front

@@ -248,21 +248,28 @@ void gather_light(std::span<const BeamLight* const> lights, std::span<const Rece
     progress(1);
 }
 
+std::vector<std::string> lost_light(const World& world, std::size_t light,
+                                    std::span<const std::unique_ptr<BeamLight>> beams) {
+    CutPaths cut;
+    for (const auto& source : beams) cut = most_cut(cut, source->losses().most);
+    const double deep = of_worst_colour(cut.too_deep), lost = of_worst_colour(cut.lost);
+    const auto percent = [](double share) { return fmt::format("{:.0f} %", 100 * share); };
+    const std::string name = "light " + std::to_string(light);
+    std::vector<std::string> said;
+    if (deep > kSilentLoss)
+        said.push_back(name + ": its rays would meet optics after maxDepth " +
+                       std::to_string(world.scene.render.max_depth) + " with up to " + percent(deep) +
+                       " of their light, which stops there");
+    if (lost > kSilentLoss)
+        said.push_back(name + ": up to " + percent(lost) +
+                       " of a ray's light is inside of more bodies of glass than can be told, and left out");
+    return said;
+}
+
 void warn_of_lost_light(const World& world, const CausticLights& lights, const Warn& warn) {
     if (!warn) return;
-    for (std::size_t l = 0; l < lights.by_light.size(); ++l) {
-        CutPaths cut;
-        for (const auto& source : lights.by_light[l]) cut = most_cut(cut, source->losses().most);
-        const double deep = of_worst_colour(cut.too_deep), lost = of_worst_colour(cut.lost);
-        const auto percent = [](double share) { return fmt::format("{:.0f} %", 100 * share); };
-        if (deep > kSilentLoss)
-            warn("light " + std::to_string(l) + ": its rays would meet optics after maxDepth " +
-                 std::to_string(world.scene.render.max_depth) + " with up to " + percent(deep) +
-                 " of their light, which stops there");
-        if (lost > kSilentLoss)
-            warn("light " + std::to_string(l) + ": up to " + percent(lost) +
-                 " of a ray's light is inside of more bodies of glass than can be told, and left out");
-    }
+    for (std::size_t l = 0; l < lights.by_light.size(); ++l)
+        for (const std::string& message : lost_light(world, l, lights.by_light[l])) warn(message);
 }
 
 }  // namespace trilens

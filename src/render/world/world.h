@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -203,6 +204,10 @@ std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Pro
 /// first asks for it. Throws Interrupted soon after `progress` says so.
 void gather_light(std::span<const BeamLight* const> lights, std::span<const ReceiverSide> faces,
                   const Progress& progress);
+
+/// What a light's beams leave out, in words.
+std::vector<std::string> lost_light(const World& world, std::size_t light,
+                                    std::span<const std::unique_ptr<BeamLight>> beams);
 
 /// Warns of what beams leave out.
 void warn_of_lost_light(const World& world, const CausticLights& lights, const Warn& warn);

@@ -1,0 +1,66 @@
+// A caustic as data: that the map's numbers agree with each other, and what it leaves out is said.
+#include <algorithm>
+#include <string>
+
+#include "inverse/maps/caustic_map.h"
+#include "support/lit_world.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+TEST_CASE("light that a closed mirror holds stops after maxDepth, and never comes out",
+          "[laws][law][caustics]") {
+    const auto world = lit_world(R"({"name": "ball", "role": "optic", "material": "mirror", "resolution": 8,
+        "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
+                                 R"({"type": "point", "position": [0, 1.1, 0], "intensity": 2})");
+    CausticMapRequest request;
+    request.target.kind = TargetKind::kObject;
+    request.target.object = 0;
+    request.target.width = request.target.height = 8;
+    const CausticMap map = make_caustic_map(*world, request);
+    CHECK(map.flux_in.y == Approx(2 * 4 * 3.14159265358979).epsilon(1e-3));
+    CHECK(map.flux_on_objects.y == 0);
+    CHECK(map.flux_away.y == 0);
+    CHECK(map.flux_received.y == 0);
+    REQUIRE(map.warnings.size() == 1);
+    CHECK(map.warnings[0].find("after maxDepth 4") != std::string::npos);
+}
+
+TEST_CASE("what a map says that ends on a floor comes to it where Fresnel's weights are steep",
+          "[laws][law][caustics]") {
+    const auto world = lit_world(R"({"name": "ball", "role": "optic", "material": "dim", "resolution": 8,
+        "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
+                                 R"({"type": "point", "position": [0.5, 4, 1], "intensity": 20})");
+    CausticMapRequest request;
+    request.target.kind = TargetKind::kObject;
+    request.target.object = 0;
+    request.target.width = request.target.height = 32;
+    const CausticMap map = make_caustic_map(*world, request);
+    CHECK(map.flux_received.y > 0.1);
+    CHECK(map.flux_on_objects.y == Approx(map.flux_received.y).epsilon(3e-3));
+}
+
+TEST_CASE("a map onto faces that share texture coordinates says so", "[laws][caustics]") {
+    const std::string ball = R"({"name": "ball", "role": "optic", "material": "glass", "resolution": 8,
+        "primitive": {"type": "sphere", "center": [0, 2.5, 0], "radius": 0.5}})";
+    for (const char* shape : {"box", "sphere"}) {
+        const bool is_box = shape == std::string("box");
+        const std::string size = is_box ? R"("center": [0, 0.6, 0], "size": [2, 0.8, 2])"
+                                        : R"("center": [0, 1, 0], "radius": 0.5)";
+        const auto world = lit_world(ball + R"(, {"name": "thing", "role": "object", "material": "white",
+            "primitive": {"type": ")" + shape +
+                                         "\", " + size + "}}",
+                                     kLamp);
+        CausticMapRequest request;
+        request.target.kind = TargetKind::kObject;
+        request.target.object = 2;
+        request.target.width = request.target.height = 8;
+        const std::vector<std::string> warnings = make_caustic_map(*world, request).warnings;
+        const bool says = std::any_of(warnings.begin(), warnings.end(), [](const std::string& one) {
+            return one.find("share texture coordinates") != std::string::npos;
+        });
+        CAPTURE(shape);
+        CHECK(says == is_box);
+    }
+}
