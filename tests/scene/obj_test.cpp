@@ -78,7 +78,7 @@ TEST_CASE("what is wrong in an OBJ comes with its line", "[scene][bad-input]") {
     CHECK(obj_error("") == "cage.obj: no faces: an OBJ without an 'f' line cannot be drawn");
     CHECK(obj_error("v 0 0\n") == "cage.obj: line 1: 'v' needs 3 numbers, found 2");
     CHECK(obj_error("v 0 0 x\n") == "cage.obj: line 1: 'x' is no number");
-    CHECK(obj_error("v 0 0 nan\n") == "cage.obj: line 1: 'nan' is beyond the limit of 1e30");
+    CHECK(obj_error("v 0 0 nan\n") == "cage.obj: line 1: 'nan' is no number");
     CHECK(obj_error("\nv 0 inf 0\n") == "cage.obj: line 2: 'inf' is beyond the limit of 1e30");
     CHECK(obj_error("v 0 1e31 0\n") == "cage.obj: line 1: '1e31' is beyond the limit of 1e30");
     CHECK(obj_error("v 0 1e999 0\n") == "cage.obj: line 1: '1e999' is beyond the limit of 1e30");

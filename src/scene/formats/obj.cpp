@@ -72,7 +72,7 @@ class ObjReader {
 
     double read_number(std::string_view word) const {
         const std::optional<double> value = parse_number(word);
-        if (!value) fail("'" + std::string(word) + "' is no number");
+        if (!value || std::isnan(*value)) fail("'" + std::string(word) + "' is no number");
         if (!(std::abs(*value) <= kLargestCoordinate))
             fail("'" + std::string(word) + "' is beyond the limit of 1e30");
         return *value;
