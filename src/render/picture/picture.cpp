@@ -82,10 +82,11 @@ void advise_on_facets(const World& world, const PictureRequest& request, const L
     if (facets < kManyFacets || facets <= samples) return;
     const double of_one = static_cast<double>(std::max<std::size_t>(1, facet_count(world, 1))),
                  wanted = static_cast<double>(samples / kSamplesPerFacet);
-    warn(fmt::format(
-        "{} facets for {} samples: trace is exact and takes less time; with -n {} a facet is "
-        "shared by {} samples",
-        facets, samples, std::max(1.0, std::floor(std::sqrt(wanted / of_one))), kSamplesPerFacet));
+    const double resolution = std::floor(std::sqrt(wanted / of_one));
+    const std::string fewer = resolution < 1 ? ""
+                                             : fmt::format("; with -n {} a facet is shared by {} samples",
+                                                           resolution, kSamplesPerFacet);
+    warn(fmt::format("{} facets for {} samples: trace is exact and takes less time{}", facets, samples, fewer));
 }
 
 /// Of the light on all optics: less is not told of.
