@@ -41,6 +41,20 @@ TEST_CASE("what a map says that ends on a floor comes to it where Fresnel's weig
     CHECK(map.flux_on_objects.y == Approx(map.flux_received.y).epsilon(3e-3));
 }
 
+TEST_CASE("a map that no optic brings light to says so", "[laws][caustics]") {
+    const auto world = lit_world(R"({"name": "thing", "role": "object", "material": "white",
+        "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.5}})",
+                                 kLamp);
+    CausticMapRequest request;
+    request.target.kind = TargetKind::kObject;
+    request.target.object = 0;
+    request.target.width = request.target.height = 8;
+    const CausticMap map = make_caustic_map(*world, request);
+    CHECK(map.flux_received.y == 0);
+    REQUIRE(map.warnings.size() == 1);
+    CHECK(map.warnings[0] == "no light of light 0 comes to an optic: the map is dark");
+}
+
 TEST_CASE("a map onto faces that share texture coordinates says so", "[laws][caustics]") {
     const std::string ball = R"({"name": "ball", "role": "optic", "material": "glass", "resolution": 8,
         "primitive": {"type": "sphere", "center": [0, 2.5, 0], "radius": 0.5}})";

@@ -108,6 +108,9 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
         map.coarse += light->losses().coarse;
     }
     map.warnings = lost_light(world, request.light, lights);
+    if (map.flux_in == Vec3(0))
+        map.warnings.push_back("no light of light " + std::to_string(request.light) +
+                               " comes to an optic: the map is dark");
     if (map.coarse > 0)
         map.warnings.push_back(std::to_string(map.coarse) +
                                " parts of the light's film are coarser than the tolerance asks");
