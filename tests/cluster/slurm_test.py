@@ -22,6 +22,8 @@ SlurmctldPort={port}
 SlurmUser={user}
 SlurmdUser={user}
 AuthType=auth/none
+# How long a job that is queued anew waits; two minutes unless told.
+AuthInfo=cred_expire=10
 CredType=cred/none
 ProctrackType=proctrack/pgid
 TaskPlugin=task/none
@@ -85,7 +87,7 @@ class Cluster:
             skip("Slurm's nodes do not come up")
 
     @staticmethod
-    def wait(condition, seconds):
+    def wait(condition, seconds, pause=0.3):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
@@ -93,7 +95,7 @@ class Cluster:
                     return True
             except subprocess.CalledProcessError:
                 pass
-            time.sleep(0.3)
+            time.sleep(pause)
         return False
 
     def process(self, name):
@@ -174,10 +176,12 @@ def main(trilens, scratch, jobs):
     try:
         started = time.monotonic()
         call("sbatch", scratch + "/submit.sh")
-        assert cluster.wait(lambda: done_runs(farm) >= jobs // 4, jobs * SECONDS_PER_JOB), "the array does not get going"
+        # The daemon, and something of a job.
+        assert cluster.wait(lambda: done_runs(farm) >= jobs // 4 and len(cluster.processes_of("n1")) > 1, jobs * SECONDS_PER_JOB,
+                            pause=0.02), "the array does not get going"
         before = done_runs(farm)
         killed = cluster.kill_node("n1")
-        assert 0 < before < jobs, "the node was to die in the middle"
+        assert 0 < before < jobs and killed > 1, "the node was to die in the middle, with a job"
         ended = cluster.wait(lambda: not call("squeue", "-h").strip() and os.path.exists(farm + "/report.html"), jobs * SECONDS_PER_JOB)
         states = call("squeue")
         assert ended, f"{done_runs(farm)} of {jobs} runs are done, and in the queue is\n{states}"
