@@ -141,41 +141,87 @@ nlohmann::json compare_paths(const World& seen, const BeamLight& light, const st
             {"by_word", words}};
 }
 
-/// What beams are off by at random lit cells, against beams divided by exact
-/// rays; and both against the tracer.
-nlohmann::json compare_exact(const World& world, const std::vector<std::unique_ptr<BeamLight>>& lights,
-                             const CausticMap& map, const Histogram& traced, std::size_t cells) {
-    const std::vector<std::size_t> chosen = lit_cells(traced, cells);
+/// Random lit cells, and their irradiance by beams divided by exact rays: the truth.
+struct TrueCells {
+    std::vector<std::size_t> cells;
+    std::vector<double> irradiance;
+    double cell_area = 0;
+};
+
+TrueCells true_cells(const World& world, const std::vector<std::unique_ptr<BeamLight>>& lights,
+                     const Histogram& traced, std::size_t count) {
     const FlatRectangle& rectangle = traced.rectangle;
-    const Vec3 du = rectangle.u / static_cast<double>(map.width),
-               dv = rectangle.v / static_cast<double>(map.height);
-    std::vector<double> exact(chosen.size()), off(chosen.size());
-    parallel_for(chosen.size(), 1, [&](std::size_t first, std::size_t last) {
+    const Vec3 du = rectangle.u / static_cast<double>(traced.width),
+               dv = rectangle.v / static_cast<double>(traced.height);
+    TrueCells truth{lit_cells(traced, count), {}, length(du) * length(dv)};
+    truth.irradiance.resize(truth.cells.size());
+    parallel_for(truth.cells.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            const auto x = static_cast<double>(chosen[i] % static_cast<std::size_t>(map.width)),
-                       y = static_cast<double>(chosen[i] / static_cast<std::size_t>(map.width));
-            Receiver there = receiver_at(
-                world, rectangle.origin + (x + 0.5) * du + (map.height - y - 0.5) * dv, rectangle.normal());
+            const auto width = static_cast<std::size_t>(traced.width);
+            const auto x = static_cast<double>(truth.cells[i] % width),
+                       y = static_cast<double>(truth.cells[i] / width);
+            Receiver there =
+                receiver_at(world, rectangle.origin + (x + 0.5) * du + (traced.height - y - 0.5) * dv,
+                            rectangle.normal());
             there.sides = {du, -dv};
             there.exact = true;
-            exact[i] = luminance(irradiance(lights, there));
+            truth.irradiance[i] = luminance(irradiance(lights, there));
         }
     });
-    double square = 0, z2 = 0, noise2 = 0;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        const double area = length(du) * length(dv), noise = std::sqrt(traced.squares[chosen[i]]) / area;
-        off[i] = std::fabs(luminance(map.irradiance[chosen[i]]) - exact[i]);
-        square += off[i] * off[i], noise2 += noise * noise;
-        z2 += std::pow((exact[i] - traced.sum[chosen[i]] / area) / noise, 2);
+    return truth;
+}
+
+/// Roots of mean squares over the true cells: what a map is off by, and what the tracer's noise is.
+double map_rms(const TrueCells& truth, const CausticMap& map) {
+    double square = 0;
+    for (std::size_t i = 0; i < truth.cells.size(); ++i)
+        square += std::pow(luminance(map.irradiance[truth.cells[i]]) - truth.irradiance[i], 2);
+    return std::sqrt(square / static_cast<double>(truth.cells.size()));
+}
+
+double noise_rms(const TrueCells& truth, const Histogram& traced) {
+    double square = 0;
+    for (const std::size_t i : truth.cells) square += traced.squares[i] / std::pow(truth.cell_area, 2);
+    return std::sqrt(square / static_cast<double>(truth.cells.size()));
+}
+
+/// The map against the truth, and the truth against the tracer.
+nlohmann::json compare_exact(const TrueCells& truth, const CausticMap& map, const Histogram& traced) {
+    std::vector<double> off(truth.cells.size());
+    double z2 = 0;
+    for (std::size_t i = 0; i < off.size(); ++i) {
+        const std::size_t cell = truth.cells[i];
+        off[i] = std::fabs(luminance(map.irradiance[cell]) - truth.irradiance[i]);
+        const double noise = std::sqrt(traced.squares[cell]) / truth.cell_area;
+        z2 += std::pow((truth.irradiance[i] - traced.sum[cell] / truth.cell_area) / noise, 2);
     }
     std::sort(off.begin(), off.end());
-    const auto n = static_cast<double>(off.size());
     return {{"cells", off.size()},
-            {"rms_difference", std::sqrt(square / n)},
+            {"rms_difference", map_rms(truth, map)},
             {"median_difference", off[off.size() / 2]},
             {"most_difference", off.back()},
-            {"exact_in_sigmas_of_tracer", std::sqrt(z2 / n)},
-            {"rms_noise", std::sqrt(noise2 / n)}};
+            {"exact_in_sigmas_of_tracer", std::sqrt(z2 / static_cast<double>(off.size()))},
+            {"rms_noise", noise_rms(truth, traced)}};
+}
+
+/// The map with finer and finer beams, each beside what the tracer's noise is after the same time.
+nlohmann::json compare_in_equal_time(const World& world, CausticMapRequest request, const TrueCells& truth,
+                                     double noise_after_a_second) {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const double tolerance : {4e-3, 1e-3, 2.5e-4, 6.25e-5, 1.5625e-5}) {
+        request.tolerance = tolerance;
+        const double start = cpu_seconds();
+        const CausticMap map = make_caustic_map(world, request);
+        const double seconds = cpu_seconds() - start, rms = map_rms(truth, map),
+                     noise = noise_after_a_second / std::sqrt(seconds);
+        rows.push_back({{"tolerance", tolerance},
+                        {"seconds", seconds},
+                        {"beams", map.beams},
+                        {"rms", rms},
+                        {"tracer_rms", noise},
+                        {"ratio", noise / rms}});
+    }
+    return rows;
 }
 
 std::unique_ptr<World> world_of(const std::string& file, const std::vector<SceneOverride>& overrides) {
@@ -222,16 +268,16 @@ int main(int count, char** words) {
     const double cell_area = length(rectangle.u) * length(rectangle.v) / (map.width * map.height);
     const PathWorld optics = optics_for_lights(*world);
     const auto lights = make_beam_lights(*world, optics, light);
-    const nlohmann::json cells = compare_cells(map, traced, cell_area, points),
-                         exact = compare_exact(*world, lights, map, traced, points);
-    const double noise = exact["rms_noise"].get<double>() * std::sqrt(tracer_seconds / map_seconds);
+    const TrueCells truth = true_cells(*world, lights, traced, points);
+    const nlohmann::json cells = compare_cells(map, traced, cell_area, points);
     nlohmann::json answer = {
         {"scene", file},
         {"map", {{"seconds", map_seconds}, {"flux", luminance(map.flux_received)}, {"beams", map.beams}}},
         {"tracer", {{"rays", rays}, {"seconds", tracer_seconds}, {"flux", traced.all}}},
         {"against_tracer", cells},
-        {"against_exact", exact},
-        {"equal_time", {{"tracer_rms", noise}, {"ratio", noise / exact["rms_difference"].get<double>()}}}};
+        {"against_exact", compare_exact(truth, map, traced)},
+        {"equal_time", compare_in_equal_time(*world, request, truth,
+                                             noise_rms(truth, traced) * std::sqrt(tracer_seconds))}};
     if (!sources.front().is_parallel) {
         Vec3 middle(0);
         for (const Vec3& point : outline) middle += point / static_cast<double>(outline.size());

@@ -5,8 +5,9 @@
                       [--bench build/release/bench/bench_caustics]
 
 Writes FOLDER/caustics.json and caustics.md: seconds of pictures with and without caustics; density at random cells of the
-floor against the tracer, in its standard deviations; root mean squares of equal time; paths at random points that beams or
-the search miss. Where POV-Ray is installed it draws the crystal ball with photons: povray.png, and beside.jpg, ours on
+floor against the tracer, in its standard deviations; paths at random points that beams or the search miss; and with finer
+and finer beams the root mean square of what their map is off by (against beams divided by exact rays) beside the tracer's
+noise after the same time, plotted in equal-time.svg. Where POV-Ray is installed it draws the crystal ball with photons: povray.png, and beside.jpg, ours on
 the left. Seconds are the processor's.
 """
 import argparse
@@ -107,16 +108,39 @@ def povray(options):
 
 
 def table(found):
-    lines = ["| scene | without, s | with, s | times | cells within 1, 2, 3 sigma of the tracer | tracer's rms in equal time over the beams' | "
-             "paths | missed by beams | missed by the search |", "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| scene | without, s | with, s | times | cells within 1, 2, 3 sigma of the tracer | paths | missed by beams | "
+             "missed by the search |", "|---|---|---|---|---|---|---|---|"]
     for name, one in found["scenes"].items():
         pictures_of, against = one["pictures"], one["against_tracer"]
         within = ", ".join(f"{100 * against[f'within_{k}_sigma']:.1f} %" for k in (1, 2, 3))
         paths = one.get("paths", {})
         lines.append(f"| {name} | {pictures_of['without']} | {pictures_of['with']} | {pictures_of['ratio']} | {within} | "
-                     f"{one['equal_time']['ratio']:.0f} | {paths.get('images', '')} | {paths.get('missed_by_beams', '')} | "
-                     f"{paths.get('missed_by_search', '')} |")
+                     f"{paths.get('images', '')} | {paths.get('missed_by_beams', '')} | {paths.get('missed_by_search', '')} |")
+    lines += ["", "| scene | tolerance | beams | s | rms | tracer's rms in equal time | times |", "|---|---|---|---|---|---|---|"]
+    for name, one in found["scenes"].items():
+        lines += [f"| {name} | {row['tolerance']:.3g} | {row['beams']} | {row['seconds']:.2f} | {row['rms']:.3g} | "
+                  f"{row['tracer_rms']:.3g} | {row['ratio']:.0f} |" for row in one["equal_time"]]
     return "\n".join(lines) + "\n"
+
+
+def plot(found, target):
+    """What a map is off by over the processor's seconds: beams, and the tracer's noise."""
+    import matplotlib
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "trilens"
+    import matplotlib.pyplot as plt
+    figure, plots = plt.subplots(1, len(found["scenes"]), figsize=(3.1 * len(found["scenes"]), 3.2), squeeze=False)
+    for axes, (name, one) in zip(plots[0], found["scenes"].items()):
+        rows, mean = one["equal_time"], one["against_tracer"]["mean"]
+        for field, label, style in (("rms", "beams", "-o"), ("tracer_rms", "light tracer", "--o")):
+            axes.plot([row["seconds"] for row in rows], [row[field] / mean for row in rows], style, label=label, markersize=4)
+        axes.set(xscale="log", yscale="log", title=name, xlabel="seconds of processor")
+        axes.grid(True, alpha=0.3)
+    plots[0][0].set_ylabel("rms, of the mean irradiance")
+    plots[0][0].legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(target, metadata={"Date": None})
+    plt.close(figure)
 
 
 def main():
@@ -139,6 +163,7 @@ def main():
         found["scenes"][name] = {"pictures": pictures(options, name), **json.loads(answer)}
         (options.folder / "caustics.json").write_text(json.dumps(found, indent=2) + "\n")
         (options.folder / "caustics.md").write_text(table(found))
+        plot(found, options.folder / "equal-time.svg")
     if (options.folder / "povray.png").exists() and "crystal-ball" in found["scenes"]:
         subprocess.run(["oiiotool", options.folder / "crystal-ball.png", options.folder / "povray.png", "--mosaic", "2x1", "--ch", "R,G,B",
                         "--nosoftwareattrib", "--compression", "jpeg:88", "-o", options.folder / "beside.jpg"], check=True)
