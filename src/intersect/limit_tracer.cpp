@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,11 @@ constexpr std::size_t kFacetsPerTask = 256;
 // ends; the bend kept is twice what was seen, and rays within twice that angle of the surface may meet the
 // patch twice; so may those within twice the angle by which it has turned from the facet where it is met.
 constexpr double kGrazing = 4, kTurns = 2;
+
+// Hits less far apart along the ray, as a share of the distances to the world's and the ray's origin over the
+// cosine to the surface, are met at one place, at an edge or a corner that faces share: ten times what a hit
+// is off. Below that cosine the two hits near a silhouette are one but for rounding.
+constexpr double kSamePlace = 10 * kSurfaceResidual, kLeastCosine = 1e-6;
 
 // How much wider than its patches the box around a surface is, as a share of itself: patches stray by what a
 // few samples say.
@@ -53,6 +59,21 @@ struct Candidates {
 /// straight through, behind which it seldom goes on without a hit; or all before some t, or only one that is
 /// surely met before it.
 enum class Reach { kToFirst, kAll, kAnyBefore };
+
+/// What is met so far behind t, at most, is met at the same place.
+double tie_behind(const RayFrame& frame, double t, double cosine) {
+    const double distances = 2 * length(frame.origin) / frame.speed + std::fabs(t);
+    return kSamePlace * distances / std::max(std::fabs(cosine), kLeastCosine);
+}
+
+/// Whether the one is met before the other: of two at the same place the one whose turn it is (see
+/// first_hit), whichever is nearer by rounding.
+bool is_met_before(const RayFrame& frame, const SurfaceHit& one, const SurfaceHit& other) {
+    const double a = dot(one.point.normal, frame.z), b = dot(other.point.normal, frame.z);
+    const double least = std::min(std::fabs(a), std::fabs(b));
+    if (std::fabs(one.t - other.t) > tie_behind(frame, other.t, least)) return one.t < other.t;
+    return std::make_tuple(a > 0, one.face, one.t) < std::make_tuple(b > 0, other.face, other.t);
+}
 
 /// By the bounds of the faces' parts; without bounds all of space.
 Box box_of_closed_form(const Surface& surface) {
@@ -219,7 +240,7 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
             return;
         }
         if (reach == Reach::kToFirst && one->is_crossed && one->t_near > query.t_min)
-            complete_to = std::min(complete_to, one->t_far);
+            complete_to = std::min(complete_to, one->t_far + tie_behind(query.frame, one->t_far, 1));
     };
     tree.visit(query.ray, query.t_min, query.t_max + beyond, [&](Id box) {
         if (!by_part) {
@@ -305,21 +326,25 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
     if (!frame) return std::nullopt;
 
     std::optional<SurfaceHit> first;
+    double first_until = kUnbounded;  // what is met no farther away may come before it
     double tried = -kUnbounded;
     for (const Reach reach : {Reach::kToFirst, Reach::kAll}) {
         const Candidates candidates = data_->candidates({ray, *frame, t_min}, reach);
         for (const Candidate& candidate : candidates.found) {
             if (candidate.t_near <= tried) continue;
-            if (first && candidate.t_near > first->t) return first;
+            if (first && candidate.t_near > first_until) return first;
             const RayPatch& patch = data_->patch(candidate.patch);
-            data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
-                if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
+            data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& found) {
+                if (!(found.t > t_min)) return;
+                SurfaceHit hit = found;
+                if (hit.point.normal == Vec3(0)) hit.point.normal = normal_for(surface, patch);
+                if (first && !is_met_before(*frame, hit, *first)) return;
                 first = hit;
-                if (hit.point.normal == Vec3(0)) first->point.normal = normal_for(surface, patch);
+                first_until = hit.t + tie_behind(*frame, hit.t, dot(hit.point.normal, frame->z));
             });
         }
         tried = candidates.complete_to;
-        if (tried == kUnbounded || (first && first->t <= tried)) break;
+        if (tried == kUnbounded || (first && first_until <= tried)) break;
     }
     return first;
 }

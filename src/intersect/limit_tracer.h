@@ -45,8 +45,10 @@ class LimitTracer {
     /// none. The hit's point lies on the ray to 1e-13 of the distances to the world's and the ray's origin.
     /// Its normal is unit and the surface's, front side out; where the surface has none (a collapsed edge),
     /// it is the fine facet's, or the surface's in the middle of one that has none. Second derivatives it has
-    /// where the surface has a closed form alone. A ray that starts on the surface needs a t_min that leaves
-    /// out its own start: see self_hit_t_min.
+    /// where the surface has a closed form alone. Where the ray meets several faces at one place (to some
+    /// 1e-12 of these distances), an edge or a corner that they share, the hit is on one that faces the ray
+    /// if there is one, and of those on the first; surfaces in closed form choose by themselves. A ray that
+    /// starts on the surface needs a t_min that leaves out its own start: see self_hit_t_min.
     std::optional<SurfaceHit> first_hit(const Ray& ray, double t_min = 0) const;
 
     /// Whether first_hit(ray, t_min) has t < t_max.
