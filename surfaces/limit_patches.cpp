@@ -162,8 +162,8 @@ constexpr std::size_t kKindBudget = kMostPatchBytes / 9;
 constexpr BoundedCache<Patch>::Budget kPatchBudget{kMostPatchBytes / 9 * 6, kMostPatchBytes / 9},
     kDensePatchBudget{kPatchBudget.kept - kKindBudget, kPatchBudget.recent};
 
-/// The patch points of more faces of the mesh do not fit into that, at some 12 kB.
-constexpr int kDense = 20'000;
+/// The patch points of more faces of the mesh are not all kept, at some 12 kB; 20,000 faces' would not fit.
+constexpr int kDense = 10'000;
 
 }  // namespace
 
@@ -172,7 +172,7 @@ struct LimitPatches::Impl {
     std::shared_ptr<SharedTrees> trees;
     Bfr::RefinerSurfaceFactory<> factory;
     FaceDomain domain;
-    bool is_dense;         // has so many faces that not all of their patch points could be kept
+    bool is_dense;         // has so many faces that not all of their patch points are kept
     std::uint64_t number;  // of this surface, and of no other
     ManyKinds kinds{kKindBudget};
     BoundedCache<Patch> patches;  // per face of the mesh

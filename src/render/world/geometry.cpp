@@ -20,9 +20,10 @@ constexpr std::size_t kMostFineFacets = 2'000'000;
 
 /// Squares along a side of the parts that are prepared together, when a ray first comes near.
 constexpr int kPartSteps = 4;
-/// Faces of surfaces that have more are such parts themselves, of so many squares along a side.
-constexpr std::size_t kManyFaces = 20'000;
-constexpr int kFineOfMany = 2;
+/// Faces of surfaces that have more are such parts themselves, held by their hulls: bounds by parts would
+/// take some 50 kB of each. So many facets all of them have together, and so many squares along a side.
+constexpr std::size_t kManyFaces = 5000, kFineOfMany = 800'000;
+constexpr int kMinFineOfMany = 2, kMaxFineOfMany = 5;
 
 /// Facets of the grid whose patches beams are held against.
 constexpr std::size_t kPatches = 20'000;
@@ -59,13 +60,24 @@ int fine_resolution(const Surface& surface) {
     return resolution_within(surface, n, kMostFineFacets);
 }
 
+/// The same, of many faces.
+int fine_resolution_of_many(const Surface& surface) {
+    if (is_polyhedron(surface)) return 1;
+    const double per_face =
+        static_cast<double>(kFineOfMany) / (2.0 * static_cast<double>(surface.face_count()));
+    return std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFineOfMany, kMaxFineOfMany);
+}
+
 /// Prepared as far as rays come, where the surface says what holds its parts.
 std::unique_ptr<LimitTracer> make_limit_tracer(const Surface& surface) {
     if (surface.has_closed_form()) return std::make_unique<LimitTracer>(surface, SurfaceGrid{});
-    const bool has_many = surface.face_count() > kManyFaces;
-    const int n = has_many ? kFineOfMany : fine_resolution(surface), steps = has_many ? n : kPartSteps;
+    std::vector<Box> hulls;
+    if (surface.face_count() > kManyFaces) hulls = face_hulls(surface);
+    const bool by_face = !hulls.empty();
+    const int n = by_face ? fine_resolution_of_many(surface) : fine_resolution(surface),
+              steps = by_face ? n : kPartSteps;
     std::vector<GridPart> parts = grid_parts(surface, n, steps);
-    std::vector<Box> boxes = has_many ? face_hulls(surface) : part_boxes(surface, n, parts);
+    std::vector<Box> boxes = by_face ? std::move(hulls) : part_boxes(surface, n, parts);
     if (boxes.empty())
         return std::make_unique<LimitTracer>(surface, make_grid(surface, fine_resolution(surface)));
     return std::make_unique<LimitTracer>(
