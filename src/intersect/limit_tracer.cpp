@@ -14,6 +14,7 @@
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "intersect/box_tree.h"
+#include "intersect/convex_polyhedron.h"
 #include "intersect/patch_tree.h"
 #include "intersect/ray_patches.h"
 #include "intersect/tracer.h"
@@ -114,6 +115,7 @@ struct LimitTracer::Data {
     double size = 0;                       // half diagonal of a box about every face's corners and middle
     Box around;                            // holds every hit
     BoxTree tree;
+    std::optional<ConvexPolyhedron> polyhedron = ConvexPolyhedron::of(surface);
 
     Data(const Surface& exact, const SurfaceGrid& fine, const std::string& isa)
         : surface(exact),
@@ -352,6 +354,7 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
 // `blocker`: a patch that the ray before this one met, which is asked first, or kNone.
 bool LimitTracer::Data::meets(const Ray& ray, double t_min, double t_max, Id& blocker) const {
     if (surface.has_closed_form()) return surface.meets(ray, t_min, t_max);
+    if (const auto known = polyhedron ? polyhedron->meets(ray, t_min, t_max) : std::nullopt) return *known;
     const std::optional<RayFrame> frame = make_ray_frame(ray);
     if (!frame) return false;
     const Query query{ray, *frame, t_min, t_max};

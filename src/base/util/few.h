@@ -44,6 +44,8 @@ class Few {
     T* end() { return data() + size_; }
     const T* begin() const { return data(); }
     const T* end() const { return data() + size_; }
+    std::reverse_iterator<const T*> rbegin() const { return std::reverse_iterator(end()); }
+    std::reverse_iterator<const T*> rend() const { return std::reverse_iterator(begin()); }
     T& operator[](std::size_t i) { return data()[i]; }
     const T& operator[](std::size_t i) const { return data()[i]; }
     T& front() { return *data(); }

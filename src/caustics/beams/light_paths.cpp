@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastLight = 1.0 / 200;
 
 /// The share of the light that takes the way of this segment at the first optic.
-Vec3 share_at_first(const std::vector<Branch>& ways, const PathSegment& segment) {
+Vec3 share_at_first(const Branches& ways, const PathSegment& segment) {
     for (const Branch& way : ways)
         if (way.step == segment.step && way.colours == segment.colours) return way.weight;
     return Vec3(0);
@@ -75,7 +75,7 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     params.only = only;
     FollowedPaths followed = follow_paths(world, {met->meeting, met->distance, around}, params);
     found.cut = followed.cut;
-    const std::vector<Branch> ways = branches(world, met->meeting, around, kAllColours);
+    const Branches ways = branches(world, met->meeting, around, kAllColours);
     const Id medium = active_medium(world, around);
     Vec3 arriving = source.strength(ray.direction) * body_transmittance(world, medium, met->distance);
     std::vector<VeilSurface> first_veils;
@@ -105,7 +105,7 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
 namespace {
 
 /// The way of a step that this colour takes; null: there is none.
-const Branch* branch_of(const std::vector<Branch>& ways, const Step& step, Colours colours) {
+const Branch* branch_of(const Branches& ways, const Step& step, Colours colours) {
     for (const Branch& way : ways)
         if (way.step == step && (way.colours == kAllColours || way.colours == colours)) return &way;
     return nullptr;
@@ -129,7 +129,7 @@ std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSour
         const bool has_end = path.medium == kNone || world.optics[step.optic].mirror;
         come_through(space, {leaving.ray, met->distance, path.has_start, has_end}, path.light, path.veils);
         if (path.steps.empty()) path.arriving = path.light;
-        const std::vector<Branch> ways = branches(world, met->meeting, leaving.media, path.colours);
+        const Branches ways = branches(world, met->meeting, leaving.media, path.colours);
         const Branch* way = branch_of(ways, step, like.colours);
         if (!way) return std::nullopt;
         path.steps.push_back(step);

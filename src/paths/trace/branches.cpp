@@ -63,10 +63,10 @@ Parted part(const Interface& interface, Colours colours) {
     return parted;
 }
 
-std::vector<Branch> glass_branches(const Interface& interface, Colours colours) {
+Branches glass_branches(const Interface& interface, Colours colours) {
     const Meeting& at = interface.at;
     const Vec3 tint = interface.world.optics[at.optic].material->base_color_factor;
-    std::vector<Branch> ways;
+    Branches ways;
     Vec3 reflectance(0), sine2(0);
     const auto transmit = [&](const Parted& parted, Colours of) {
         if (!parted.refracted) return;
@@ -110,9 +110,9 @@ double alpha_of(const PathWorld& world, Id optic) {
 /// Of what leaves a microfacet in proportion to how much of it is seen, takes away what others mask on its
 /// way out, and what would go to the wrong side. With visible normals that is all that is left of the BRDF,
 /// or of the BTDF, times the cosine, over the density. Source: Heitz 2018.
-void mask_microfacets(const RoughSurface& surface, const Vec3& microfacet, std::vector<Branch>& ways) {
+void mask_microfacets(const RoughSurface& surface, const Vec3& microfacet, Branches& ways) {
     const double density = visible_density(surface, microfacet), cosine = dot(surface.view, microfacet);
-    std::erase_if(ways, [&](Branch& way) {
+    const Branch* end = std::remove_if(ways.begin(), ways.end(), [&](Branch& way) {
         const bool reflects = way.step.event == Event::kReflect;
         const double out = dot(surface.normal, way.direction) * (reflects ? 1 : -1);
         if (!(out > 0)) return true;
@@ -129,6 +129,7 @@ void mask_microfacets(const RoughSurface& surface, const Vec3& microfacet, std::
         way.lobe = density > 0 ? turn / density : 0;
         return false;
     });
+    ways.resize(static_cast<std::size_t>(end - ways.begin()));
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ Vec3 body_transmittance(const PathWorld& world, Id body, double way) {
     return body == kNone ? Vec3(1) : volume_transmittance(*world.optics[body].material, way);
 }
 
-std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours) {
+Branches branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours) {
     const PathOptic& optic = world.optics[at.optic];
     const Vec3 facing = at.front ? at.normal : -at.normal;
     const bool is_rough = at.microfacet != Vec3(0);
@@ -145,12 +146,12 @@ std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Me
     if (optic.mirror) {
         const double cosine = std::clamp(-dot(at.incoming, normal), 0.0, 1.0);
         const Vec3 weight = optic_weights(*optic.material, {cosine, at.front}, world.fresnel).reflect;
-        std::vector<Branch> way{{{at.optic, Event::kReflect},
-                                 mirrored(at.incoming, normal),
-                                 masked(weight, colours),
-                                 media,
-                                 colours,
-                                 true}};
+        Branches way{Branch{{at.optic, Event::kReflect},
+                            mirrored(at.incoming, normal),
+                            masked(weight, colours),
+                            media,
+                            colours,
+                            true}};
         if (is_rough) mask_microfacets({facing, -at.incoming, alpha_of(world, at.optic)}, at.microfacet, way);
         return way;
     }
@@ -160,13 +161,13 @@ std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Me
     const Interface interface { world, at, sides->before, sides->after, normal };
     const GlassInterface glass = interface.glass();
     if (glass.before == glass.after)
-        return {{{at.optic, Event::kPass},
-                 at.incoming,
-                 masked(Vec3(1), colours),
-                 interface.after,
-                 colours,
-                 true}};
-    std::vector<Branch> ways = glass_branches(interface, colours);
+        return Branches{Branch{{at.optic, Event::kPass},
+                               at.incoming,
+                               masked(Vec3(1), colours),
+                               interface.after,
+                               colours,
+                               true}};
+    Branches ways = glass_branches(interface, colours);
     if (is_rough) mask_microfacets({facing, -at.incoming, alpha_of(world, at.optic)}, at.microfacet, ways);
     return ways;
 }

@@ -95,7 +95,7 @@ std::uint64_t Follower::that_go(const Step& step, std::size_t before, std::uint6
 
 void Follower::start(const PathStart& from) {
     const Meeting first = turned(from.first, 0);
-    const std::vector<Branch> ways = branches(world_, first, from.around, kAllColours);
+    const Branches ways = branches(world_, first, from.around, kAllColours);
     if (ways.empty() && first.microfacet == Vec3(0)) followed_.cut.lost += Vec3(1);
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
         const bool reflects = way_on->step.event == Event::kReflect;
@@ -119,7 +119,7 @@ void Follower::start(const PathStart& from) {
 
 void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
     const Meeting meeting = turned(next.meeting, from.steps);
-    const std::vector<Branch> ways = branches(world_, meeting, from.branch.media, from.branch.colours);
+    const Branches ways = branches(world_, meeting, from.branch.media, from.branch.colours);
     if (ways.empty() && meeting.microfacet == Vec3(0)) followed_.cut.lost += from.first_weight * from.weight;
     const PathSegment& parent = followed_.segments[segment];
     const Vec3 arrived = from.weight * body_transmittance(world_, parent.medium, next.distance);
@@ -255,7 +255,7 @@ int turn_of(const PathWorld& world, const NextOptic& next) {
 }
 
 /// The branch that a segment took; null where there is none.
-const Branch* same_branch(const std::vector<Branch>& ways, const PathSegment& like) {
+const Branch* same_branch(const Branches& ways, const PathSegment& like) {
     for (const Branch& one : ways)
         if (one.step == like.step && one.colours == like.colours) return &one;
     return nullptr;
@@ -292,7 +292,7 @@ FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const
 std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,
                                                      const std::vector<PathSegment>& like) {
     struct Arrived {
-        std::vector<Branch> ways;  // from the optic at the segment's far end
+        Branches ways;  // from the optic at the segment's far end
         Meeting meeting;
         double way = 0;
         Vec3 weight{1};

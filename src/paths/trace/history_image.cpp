@@ -23,7 +23,7 @@ struct Exit {
 };
 
 /// The branch that a segment takes; null where there is none.
-const Branch* branch_of(const std::vector<Branch>& ways, const PathSegment& like) {
+const Branch* branch_of(const Branches& ways, const PathSegment& like) {
     for (const Branch& one : ways)
         if (one.step == like.step && one.colours == like.colours) return &one;
     return nullptr;
@@ -45,7 +45,7 @@ std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
     exit.weight = body_transmittance(world, active_medium(world, media), exit.first_way);
     Colours colours = kAllColours;
     for (const PathSegment& segment : query.history) {
-        const std::vector<Branch> ways = branches(world, at, media, colours);
+        const Branches ways = branches(world, at, media, colours);
         const Branch* branch = branch_of(ways, segment);
         if (!branch) return std::nullopt;
         media = branch->media;

@@ -10,6 +10,7 @@
 
 #include "base/description/material.h"
 #include "base/raymesh/surface.h"
+#include "base/util/few.h"
 #include "base/util/ids.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/patch_tree.h"
@@ -140,6 +141,8 @@ struct Branch {
     // the surface is smooth.
     double lobe = 0;
 };
+/// Few, that need no memory of their own.
+using Branches = Few<Branch, 5>;
 
 /// The ways that light goes on from a meeting, at most five, the principal one first: mirrored by a mirror;
 /// reflected by glass and refracted through it, once or, where it disperses, once for each colour; straight
@@ -151,7 +154,7 @@ struct Branch {
 /// ways to the wrong side of the surface are left out.
 ///
 /// On either side lies what sides_of says. A normal beyond grazing counts as grazing for refraction.
-std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours);
+Branches branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours);
 
 /// The meeting at one of the microfacets that the ray sees of a rough optic (see visible_normal); that of a
 /// smooth one as it is.

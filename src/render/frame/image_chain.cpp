@@ -136,8 +136,7 @@ HistoryQuery history_query(const World& world, const Frame& frame, std::span<con
     return query;
 }
 
-std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, const ChainStart& start,
-                                      const ProjectedPoint& point) {
+std::optional<PathChain> chain_from(const World& world, const Frame& frame, const ChainStart& start) {
     const std::optional<ChainEnd> eye = chain_eye(frame.camera);
     if (start.events.empty() || !eye) return std::nullopt;
     Media around;
@@ -148,14 +147,24 @@ std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, co
     }
     const auto media = event_media(world, around, start.events);
     if (!media) return std::nullopt;
+    return PathChain{
+        *eye,
+        {},
+        chain_events(
+            start.events, *media, start.colours.value_or(usual_colours(start.events)),
+            [&](Id optic) { return world.optics[optic].surface.get(); },
+            [&](Id optic) -> const Material& {
+                return world.scene.materials[world.optics[optic].material];
+            })};
+}
+
+std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, const ChainStart& start,
+                                      const ProjectedPoint& point) {
+    std::optional<PathChain> chain = chain_from(world, frame, start);
+    if (!chain) return std::nullopt;
+    chain->point = {point.place, point.is_direction};
     SolvedChain solved;
-    PathChain& chain = solved.chain;
-    chain.eye = *eye;
-    chain.point = {point.place, point.is_direction};
-    chain.events = chain_events(
-        start.events, *media, start.colours.value_or(usual_colours(start.events)),
-        [&](Id optic) { return world.optics[optic].surface.get(); },
-        [&](Id optic) -> const Material& { return world.scene.materials[world.optics[optic].material]; });
+    solved.chain = std::move(*chain);
 
     PerEvent<SurfaceParameter> at;
     for (const PathEvent& event : start.events) at.push_back({event.face, event.uv});
@@ -169,9 +178,9 @@ std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, co
         if (!hit) return std::nullopt;
         return SurfaceParameter{hit->face, hit->uv};
     };
-    std::optional<ChainShape> shape = solve_chain(chain, at, find);
+    std::optional<ChainShape> shape = solve_chain(solved.chain, at, find);
     if (!shape) return std::nullopt;
-    const ChainBend bend = chain_bend(chain, shape->points);
+    const ChainBend bend = chain_bend(solved.chain, shape->points);
     for (std::size_t i = 0; i < shape->points.size(); ++i)
         if ((dot(bend.way[i], shape->points[i].normal) <= 0) != start.events[i].front) return std::nullopt;
     solved.shape = std::move(*shape);

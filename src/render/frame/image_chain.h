@@ -68,6 +68,10 @@ struct ChainStart {
     std::optional<Colours> colours{};
 };
 
+/// The chain over a start's events, with the media that the camera's ray at its pixel meets and a point at the
+/// world's origin; none as make_chain, or where the media cannot be told.
+std::optional<PathChain> chain_from(const World& world, const Frame& frame, const ChainStart& start);
+
 /// A path of light, and where it meets each surface.
 struct SolvedChain {
     PathChain chain;

@@ -182,7 +182,7 @@ std::optional<Ray> ray_after(const PathWorld& world, const Ray& from, const Medi
     Colours colours = kAllColours;
     Ray leaving;
     for (std::size_t k = 0; k < steps.size(); ++k) {
-        const std::vector<Branch> ways = branches(world, at, media, colours);
+        const Branches ways = branches(world, at, media, colours);
         const auto way_on = std::find_if(ways.begin(), ways.end(), [&](const Branch& one) {
             return one.step == steps[k] && (one.colours == kAllColours || one.colours == end_colours);
         });

@@ -51,7 +51,7 @@ std::optional<Vec3> weight_over_several(const PathWorld& paths, const EventsWay&
         const Vec3 to = event.point - from;
         weight *= body_transmittance(paths, active_medium(paths, media), length(to));
         const Meeting at{event.optic, normalize_or_zero(to), event.point, event.normal, event.front};
-        const std::vector<Branch> ways = branches(paths, at, media, colours);
+        const Branches ways = branches(paths, at, media, colours);
         // Where glass parts them green comes first.
         const auto taken = std::find_if(ways.begin(), ways.end(), [&](const Branch& one) {
             return one.step.event == event.event && (way.colours.empty() || one.colours == way.colours[i]);

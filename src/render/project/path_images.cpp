@@ -174,6 +174,7 @@ void SeveralOpticsImages::drop_histories() {
 /// Rows of what is made later; of optics whose normals are not their own, exact rays alone tell.
 void SeveralOpticsImages::get_ready() {
     for (History& history : histories_) {
+        find_coaxial(history);
         if (!history.mesh.facets.empty()) history.seeds = std::make_unique<MeshPointImages>(history.mesh);
         history.mesh = {};
         for (const PathSegment& segment : history.chain) history.colours.push_back(segment.colours);
@@ -184,6 +185,20 @@ void SeveralOpticsImages::get_ready() {
         history.facet_paths = std::make_unique<Lazy<FacetPaths>[]>(history.grid_facet.size());
         history.lone_paths = std::make_unique<Lazy<LonePath>[]>(history.lone.size());
     }
+}
+
+/// Facets and lone rays whose images are found over coaxial interfaces are no seeds.
+void SeveralOpticsImages::find_coaxial(History& history) const {
+    history.coaxial = std::make_unique<CoaxialImages>(
+        world_, frame_, HistoryFacets{history.chain, history.mesh, history.grid_facet, history.proven});
+    if (history.coaxial->hold_all()) {
+        history.mesh = {};
+        history.lone.clear();
+    }
+    std::erase_if(history.lone,
+                  [&](const LoneRay& ray) { return history.coaxial->hold(ray.pixel, ray.exit); });
+    for (std::size_t f = 0; f < history.mesh.facets.size(); ++f)
+        if (history.coaxial->hold(f)) history.mesh.facets[f] = {kNone, kNone, kNone};
 }
 
 void SeveralOpticsImages::add_nodes() {

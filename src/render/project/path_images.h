@@ -13,6 +13,7 @@
 #include "paths/facets/optic_paths.h"
 #include "paths/trace/follow.h"
 #include "render/frame/frame.h"
+#include "render/project/coaxial_images.h"
 #include "render/project/film_parts.h"
 #include "render/project/path_starts.h"
 #include "render/shoot/shoot.h"
@@ -70,6 +71,7 @@ class SeveralOpticsImages {
         std::vector<Id> grid_facet;              // per facet of the seeds' mesh
         std::vector<char> proven;                // likewise: all its rays have the history
         std::vector<LoneRay> lone;
+        std::unique_ptr<CoaxialImages> coaxial;
         double most_light = 0;  // of any colour, at any corner or lone ray
         // Made when first asked for: per facet of the seeds' mesh, and per lone ray.
         std::unique_ptr<Lazy<FacetPaths>[]> facet_paths;
@@ -95,6 +97,7 @@ class SeveralOpticsImages {
     History& history_of(const std::vector<PathSegment>& segments, Id last);
     void drop_histories();
     void get_ready();
+    void find_coaxial(History& history) const;
     std::vector<SeveralOpticsImage> images_over(const History& history, const Vec3& point) const;
 
     const World& world_;

@@ -180,10 +180,9 @@ void PointProjector::keep_strongest(PointProjection& result) const {
 
 void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3& point,
                                  PointProjection& result) const {
-    for (const SeveralOpticsImage& found : several.images(point)) {
-        const std::vector<PathEvent>& events = found.exact.events;
+    for (SeveralOpticsImage& found : several.images(point)) {
         const std::optional<Ray> view = exact_ray(camera_, found.exact.pixel);
-        if (!view || !sight_.goes_straight(events.back().point, point)) continue;
+        if (!view || !sight_.goes_straight(found.exact.events.back().point, point)) continue;
         WorldImage image;
         image.weight = found.exact.weight;
         if (image.weight == Vec3(0)) continue;  // no light comes this way
@@ -195,11 +194,12 @@ void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3&
         image.length = found.exact.distance;
         image.t = found.exact.distance / found.exact.first_way;
         image.refined = true;
-        image.steps = found.steps;
-        image.events = events;
+        image.steps = std::move(found.steps);
+        image.events = std::move(found.exact.events);
         image.has_derivative = true;
         image.derivative = found.exact.derivative;
         image.inside = on_film(image.pixel);
+        const std::vector<PathEvent>& events = image.events;
         image.visible = request_.visibility && image.inside &&
                         sight_.is_free_of_objects(events.back().point, point) &&
                         sight_.sees(view->origin, events.front().point);

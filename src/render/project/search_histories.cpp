@@ -58,6 +58,7 @@ class SeveralOpticsImages::Search {
     Search(const SeveralOpticsImages& images, const History& history, const Vec3& point)
         : images_(images), history_(history), point_(point) {}
 
+    void from_coaxial(std::size_t run);
     void from_facet(const MeshPointImage& seed);
     void from_lone(std::size_t lone);
     bool has_found() const { return !found_.empty(); }
@@ -148,6 +149,18 @@ void SeveralOpticsImages::Search::refine_on_film(const Start& start, const Ray& 
     if (auto image = refine_history_image(query(), start.pixel)) add(start, std::move(*image));
 }
 
+void SeveralOpticsImages::Search::from_coaxial(std::size_t run) {
+    std::optional<CoaxialImage> found = history_.coaxial->image(run, point_);
+    if (!found) return;
+    const Vec2 pixel = found->image.film.pixel;
+    std::optional<HistoryImage> image;
+    if (found->is_proven) image = proven_image(found->image);
+    if (!image) image = history_image_at(query(), pixel);
+    if (!image) return;
+    image->derivative = found->image.derivative;
+    add({{}, pixel, found->facet}, std::move(*image));
+}
+
 void SeveralOpticsImages::Search::from_facet(const MeshPointImage& seed) {
     const FacetPaths& paths = history_.facet_paths[seed.facet].get([&] {
         return std::make_unique<FacetPaths>(query(), history_.seeds->screen_corners(seed.facet),
@@ -187,6 +200,7 @@ void SeveralOpticsImages::Search::from_lone(std::size_t lone) {
 std::vector<SeveralOpticsImage> SeveralOpticsImages::images_over(const History& history,
                                                                  const Vec3& point) const {
     Search search(*this, history, point);
+    for (std::size_t run = 0; run < history.coaxial->run_count(); ++run) search.from_coaxial(run);
     if (history.seeds)
         for (const MeshPointImage& seed : history.seeds->images(point)) search.from_facet(seed);
 

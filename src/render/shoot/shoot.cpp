@@ -83,7 +83,7 @@ class Shooter {
         std::size_t letters = 0;  // of the word that are done
     };
 
-    const Branch* choose(const std::vector<Branch>& ways, const Way& way, bool is_first) const;
+    const Branch* choose(const Branches& ways, const Way& way, bool is_first) const;
     bool ends_at(const Way& way, std::size_t meetings) const;
     void end_at(const Hit& hit, double distance, ShotRay& shot) const;
     void follow(const Ray& view, const FirstSurface& first, ShotRay& shot,
@@ -97,7 +97,7 @@ class Shooter {
 };
 
 /// The strongest way that is wanted; null: none is.
-const Branch* Shooter::choose(const std::vector<Branch>& ways, const Way& way, bool is_first) const {
+const Branch* Shooter::choose(const Branches& ways, const Way& way, bool is_first) const {
     const Branch* best = nullptr;
     double most = 0;
     for (const Branch& one : ways) {
@@ -143,7 +143,7 @@ void Shooter::follow(const Ray& view, const FirstSurface& first, ShotRay& shot,
     shot.weight =
         body_transmittance(paths_, active_medium(paths_, way.media), hit.t * length(view.direction));
     while (true) {
-        const std::vector<Branch> ways = branches(paths_, at, way.media, way.colours);
+        const Branches ways = branches(paths_, at, way.media, way.colours);
         const Branch* chosen = choose(ways, way, shot.event_count == 0);
         if (!chosen) {
             shot.state = ways.empty() ? ShotState::kLost : ShotState::kOtherPath;
