@@ -11,9 +11,9 @@
 namespace trilens {
 namespace {
 
-/// Facets of the fine grid that finds the face under a ray; Newton then finds the exact point, so this only
-/// decides how little of a silhouette is missed.
-constexpr std::size_t kFineFacets = 400'000;
+/// Facets of the fine grid that finds the face under a ray; Newton then finds the exact point. Fewer leave
+/// more to Newton's method near silhouettes, more take longer to prepare, and memory that caches do not hold.
+constexpr std::size_t kFineFacets = 100'000;
 constexpr int kMinFine = 4, kMaxFine = 256;
 /// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
 constexpr std::size_t kMostFineFacets = 2'000'000;
