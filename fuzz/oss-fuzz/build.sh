@@ -34,5 +34,5 @@ for seeds in fuzz/seeds/*; do
     cp "$build/fuzz/trilens_fuzz" "$OUT/${target}_fuzzer"
     (cd "$seeds" && /usr/bin/python3 -m zipfile -c "$OUT/${target}_fuzzer_seed_corpus.zip" *)
     case $target in scene | animation | gltf | sweep | test | run | wish) cp "$words" "$OUT/${target}_fuzzer.dict" ;; esac
-    [[ $target != @(laws|caustics|terrain) ]] || printf '[libfuzzer]\nmax_len = 400\n' >"$OUT/${target}_fuzzer.options"
+    [[ $target != @(laws|caustics|radiosity|terrain) ]] || printf '[libfuzzer]\nmax_len = 400\n' >"$OUT/${target}_fuzzer.options"
 done
