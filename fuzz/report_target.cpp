@@ -45,18 +45,18 @@ void require_escaped(const std::string& page) {
 }  // namespace
 
 Answer sweep_report(std::string_view bytes) {
-    const auto [first, second, title, command] = lines_of<4>(bytes);
+    const auto names = lines_of<4>(bytes);
     SweepRequest request;
     request.folder = fuzz_folder() + "/sweep";
     fs::remove_all(request.folder);
     return answer([&] {
         Scene scene = parse_scene(small_scene());
-        scene.meshes[0].name = kMark + first;
-        scene.meshes[1].name = kMark + second;
+        scene.meshes[0].name = kMark + names[0];
+        scene.meshes[1].name = kMark + names[1];
         request.loaded = scene;
         request.over = {{"resolution", {"1", "2"}}};
-        request.title = kMark + title;
-        request.command = kMark + command;
+        request.title = kMark + names[2];
+        request.command = kMark + names[3];
         const SweepSummary made = run_sweep(request);
         require(made.runs.size() == 2, "a sweep of two pictures has not two");
         const std::string table = text_of(request.folder + "/runs.csv");

@@ -187,7 +187,9 @@ Image empty_image(const Imf::Header& header, const ExrWindows& windows) {
     }
     for (auto it = header.begin(); it != header.end(); ++it) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
-        if (text && std::string(it.name()).rfind(kPrefix, 0) == 0) image.metadata[it.name()] = text->value();
+        // A text ends at its first zero, as it does where it is written.
+        if (text && std::string(it.name()).rfind(kPrefix, 0) == 0)
+            image.metadata[it.name()] = text->value().c_str();
     }
     return image;
 }
