@@ -28,7 +28,8 @@ namespace {
 
 using namespace trilens;
 
-constexpr double kFewRays = 30;          // a cell of fewer does not know its noise
+constexpr double kFewRays = 30;  // a cell of fewer does not know its noise
+constexpr double kTrueTolerance = 1e-3 / 16;
 constexpr double kFollowed = 1.0 / 200;  // beams leave fainter paths out
 
 double cpu_seconds() {
@@ -268,7 +269,9 @@ int main(int count, char** words) {
     const double cell_area = length(rectangle.u) * length(rectangle.v) / (map.width * map.height);
     const PathWorld optics = optics_for_lights(*world);
     const auto lights = make_beam_lights(*world, optics, light);
-    const TrueCells truth = true_cells(*world, lights, traced, points);
+    // Borders of histories lie where the first beams have them: finely for the truth.
+    const auto fine = make_beam_lights(*world, optics, light, BeamGridParams::within(kTrueTolerance));
+    const TrueCells truth = true_cells(*world, fine, traced, points);
     const nlohmann::json cells = compare_cells(map, traced, cell_area, points);
     nlohmann::json answer = {
         {"scene", file},

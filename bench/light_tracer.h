@@ -126,7 +126,7 @@ struct LightTracer {
                 return;
             }
             if (depth > scene.optics.max_depth) return;
-            const std::vector<Branch> ways = branches(scene.optics, *at, media, colours);
+            const Branches ways = branches(scene.optics, *at, media, colours);
             double all = 0;
             for (const Branch& way : ways) all += luminance(way.weight * light);
             if (!(all > 0)) return;

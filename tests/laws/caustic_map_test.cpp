@@ -1,6 +1,8 @@
 // A caustic as data: that the map's numbers agree with each other, and what it leaves out is said.
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "inverse/maps/caustic_map.h"
 #include "support/lit_world.h"
@@ -39,6 +41,34 @@ TEST_CASE("what a map says that ends on a floor comes to it where Fresnel's weig
     const CausticMap map = make_caustic_map(*world, request);
     CHECK(map.flux_received.y > 0.1);
     CHECK(map.flux_on_objects.y == Approx(map.flux_received.y).epsilon(3e-3));
+}
+
+TEST_CASE("with the tolerance a map comes nearer to the truth, also where histories end",
+          "[laws][law][caustics]") {
+    const auto world =
+        lit_world(R"({"name": "ring", "role": "optic", "material": "mirror", "resolution": 8,
+        "primitive": {"type": "cylinder", "center": [0, 0.4, 0], "axis": [0, 1, 0], "radius": 2, "height": 0.8}})",
+                  R"({"type": "directional", "direction": [-0.85, -0.6, -0.35], "intensity": 2})");
+    CausticMapRequest request;
+    request.target.kind = TargetKind::kObject;
+    request.target.object = 0;
+    request.target.width = request.target.height = 96;
+    const auto map = [&](double tolerance, bool exact) {
+        request.tolerance = tolerance;
+        request.exact = exact;
+        return make_caustic_map(*world, request).irradiance;
+    };
+    const std::vector<Vec3> truth = map(1e-3, true);
+    const auto error = [&](double tolerance) {
+        const std::vector<Vec3> light = map(tolerance, false);
+        double square = 0;
+        for (std::size_t i = 0; i < light.size(); ++i) square += std::pow(light[i].y - truth[i].y, 2);
+        return std::sqrt(square / static_cast<double>(light.size()));
+    };
+    const double usual = error(1e-3), fine = error(1e-3 / 16);
+    CAPTURE(usual, fine);
+    CHECK(usual < 2e-3);
+    CHECK(fine < usual / 3);
 }
 
 TEST_CASE("a map that no optic brings light to says so", "[laws][caustics]") {

@@ -25,6 +25,8 @@ constexpr double kLetBe = 0.05;
 
 /// Beyond the most triangles, this part of them is kept for those in which histories hide.
 constexpr std::size_t kReserve = 4;
+/// Of the usual number of triangles at most, however small the tolerance.
+constexpr double kMostTimes = 4;
 
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
@@ -279,6 +281,19 @@ void BeamGrid::divide_all(std::vector<Id> asked, const Progress& progress) {
         follow_tears(part);
         asked = split_where_room(torn_oddly());
     }
+}
+
+BeamGridParams BeamGridParams::within(double tolerance) {
+    // A flat triangle, and a straight piece of a border in one, are off by the square of their size; a
+    // bisection halves it.
+    BeamGridParams params;
+    const double times = std::max(1.0, params.tolerance / tolerance);
+    const int more = static_cast<int>(std::ceil(std::log2(times)));
+    params.most_levels += more, params.mixed_levels += more;
+    params.most_triangles =
+        static_cast<std::size_t>(std::min(times, kMostTimes) * static_cast<double>(params.most_triangles));
+    params.tolerance = tolerance;
+    return params;
 }
 
 void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {

@@ -25,6 +25,9 @@ struct BeamGridParams {
     int mixed_levels = 4;     // of one whose corners have different histories
     double tolerance = 1e-3;  // how far light may fall from its place, as a share of the scene's size
     std::size_t most_triangles = 16'000;  // and a quarter more where histories hide
+
+    /// For another tolerance: with levels and triangles as a smaller one needs them.
+    static BeamGridParams within(double tolerance);
 };
 
 /// Triangles over one window; the bases of two triangles that share one are equal, so no corner lies on

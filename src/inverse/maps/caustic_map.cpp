@@ -14,6 +14,9 @@ namespace {
 /// Of the job: while beams are made, and gathered where the object is flat.
 constexpr double kBeamsShare = 0.3, kGatheringShare = 0.3;
 
+/// Borders of histories lie in the truth, too, where the first beams have them.
+constexpr double kFinerTruth = 16;
+
 /// The light of a pixel, and its area; none where the object is not.
 struct CausticPixel {
     bool covered = false;
@@ -60,8 +63,8 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
         throw UsageError("light falls onto a plane or an object, not onto directions");
     const Target target(request.target, world.scene);
     const PathWorld optics = optics_for_lights(world);
-    BeamGridParams params;
-    params.tolerance = request.tolerance;
+    const BeamGridParams params =
+        BeamGridParams::within(request.exact ? request.tolerance / kFinerTruth : request.tolerance);
     const std::vector<std::unique_ptr<BeamLight>> lights =
         make_beam_lights(world, optics, request.light, params, progress.part(0, kBeamsShare));
     if (target.rectangle()) {
