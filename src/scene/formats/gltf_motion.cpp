@@ -195,7 +195,7 @@ void apply(const GltfChannel& channel, double time, std::vector<GltfNode>& nodes
     if (channel.property == Property::kRotation)
         node.rotation = unit_rotation({now[0], now[1], now[2], now[3]});
     else
-        (channel.property == Property::kScale ? node.scale : node.translation) = {now[0], now[1], now[2]};
+        (channel.property == Property::kScale ? node.scale : node.translation) = Vec3(now[0], now[1], now[2]);
 }
 
 }  // namespace
