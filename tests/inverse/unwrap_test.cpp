@@ -210,7 +210,7 @@ TEST_CASE("what cannot be unwrapped is told in one message", "[inverse][bad-inpu
     const auto world = ball_under_sky(64, 64, 4, 64);
     auto small = std::make_shared<Texture>(Texture{2, 2, std::vector<float>(12, 1.0f), {}});
     CHECK_THROWS_WITH(unwrap(*world, to_equirect(64), {{"p.exr", small, 0}}),
-                      Catch::Contains("2 x 2") && Catch::Contains("64 x 64"));
+                      ContainsSubstring("2 x 2") && ContainsSubstring("64 x 64"));
     CHECK_THROWS_AS(unwrap(*world, to_equirect(64), {}), UsageError);
     CHECK_THROWS_AS(unwrap(*world, to_equirect(64), {{"p", photograph(*world), 7}}), UsageError);
     UnwrapRequest request = to_equirect(64);
@@ -219,11 +219,11 @@ TEST_CASE("what cannot be unwrapped is told in one message", "[inverse][bad-inpu
     request = to_equirect(64);
     request.path = Path::kRefract;
     CHECK_THROWS_WITH(unwrap(*world, request, {{"p", photograph(*world), 0}}),
-                      Catch::Contains("nothing of the target"));
+                      ContainsSubstring("nothing of the target"));
 
     const auto inside = world_of(ball_json(64, 64, 0.5));
     CHECK_THROWS_WITH(unwrap(*inside, to_equirect(64), {{"p", photograph(*inside), 0}}),
-                      Catch::Contains("inside or behind"));
+                      ContainsSubstring("inside or behind"));
     for (const char* text : {"equirect:10", "equirect:axb", "cubemap:-3", "fisheye:10:x", "plane:1,2,3,4x4",
                              "nobody", "ball:3x3"})
         CHECK_THROWS_AS(Target(parse_target(text, world->scene), world->scene), Error);

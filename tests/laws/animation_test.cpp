@@ -188,22 +188,24 @@ TEST_CASE("animations that are none are refused with their place", "[laws][bad-i
         }
         return "taken";
     };
-    using Catch::Matchers::Contains;
     CHECK_THAT(refused(track("/cameras/0/yfow", key(0, "40"))),
-               Contains("film.json") && Contains("/animation/tracks/0/target") && Contains("names no value"));
-    CHECK_THAT(refused(track("/meshes/9/points", key(0, "[]"))), Contains("/animation/tracks/0/target"));
+               ContainsSubstring("film.json") && ContainsSubstring("/animation/tracks/0/target") &&
+                   ContainsSubstring("names no value"));
+    CHECK_THAT(refused(track("/meshes/9/points", key(0, "[]"))),
+               ContainsSubstring("/animation/tracks/0/target"));
     CHECK_THAT(refused(track("/cameras/0/yfov", key(3, "40") + "," + key(3, "41"))),
-               Contains("/animation/tracks/0/keys/1/frame") && Contains("after the key before it"));
+               ContainsSubstring("/animation/tracks/0/keys/1/frame") &&
+                   ContainsSubstring("after the key before it"));
     CHECK_THAT(refused(track("/meshes/1/points", key(0, kCube) + "," + key(4, "[[0,0,0]]"))),
-               Contains("/animation/tracks/0/keys/1/value") && Contains("is not like"));
+               ContainsSubstring("/animation/tracks/0/keys/1/value") && ContainsSubstring("is not like"));
     CHECK_THAT(refused(track("/materials/0/name", key(0, R"("a")") + "," + key(4, R"("b")"))),
-               Contains("/animation/tracks/0/keys/0/value") && Contains("step"));
+               ContainsSubstring("/animation/tracks/0/keys/0/value") && ContainsSubstring("step"));
     CHECK_THAT(refused(track("/meshes/2/transform/rotate", key(0, "[0,0,0,0]"))),
-               Contains("/animation/tracks/0/keys/0/value") && Contains("zero"));
+               ContainsSubstring("/animation/tracks/0/keys/0/value") && ContainsSubstring("zero"));
     CHECK_THAT(refused(track("/cameras/0/yfov", key(0, "40")) + "," + track("/cameras/0/yfov", key(0, "50"))),
-               Contains("/animation/tracks/1/target") && Contains("already"));
+               ContainsSubstring("/animation/tracks/1/target") && ContainsSubstring("already"));
     CHECK_THAT(refused(R"({ "target": "/cameras/0/yfov", "keys": [], "easing": 1 })"),
-               Contains("/animation/tracks/0"));
+               ContainsSubstring("/animation/tracks/0"));
     // A value that the schema does not allow is found when its frame is asked for.
     const Scene scene =
         parse_scene(scene_text({}, track("/cameras/0/yfov", key(0, "40") + "," + key(4, "220"))));

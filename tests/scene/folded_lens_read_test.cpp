@@ -237,7 +237,7 @@ TEST_CASE("Q-type aspheres of JSON are normalised by their own radius, or by the
         "materials": [{"name": "glass", "transmissionFactor": 1}],
         "meshes": [{"name": "lens", "role": "optic", "material": "glass", "primitive": {"type": "lens", "thickness": 0.5,
             "front": {"radius": 3, "conic": -1, "aperture": 1, "qbfs": [0.01]}, "back": {"aperture": 1}}}]})"),
-        Catch::Matchers::Contains(
+        ContainsSubstring(
             ": /meshes/0/primitive/front/qbfs: departs from a sphere: the side's conic must be 0"));
 }
 

@@ -5,11 +5,19 @@
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
 using Catch::Approx;
+using Catch::Matchers::ContainsSubstring;
 #else
 #include <catch2/catch.hpp>
 #endif
 
 #include <string>
+
+#if !__has_include(<catch2/catch_all.hpp>)
+/// As the later version calls it, where Contains asks for an element.
+inline auto ContainsSubstring(const std::string& text) {
+    return Catch::Matchers::Contains(text);
+}
+#endif
 
 namespace trilens_test {
 
