@@ -14,7 +14,7 @@ using CornerUvs = std::array<Vec2, 4>;
 /// What moves the point along u alone and along v alone, of parameters (a, b) with uv_a and uv_b their
 /// derivatives.
 TexturePlace by_parameters(const Vec2& uv, const Vec2& uv_a, const Vec2& uv_b, const SurfacePoint& at) {
-    const double area = uv_a.x * uv_b.y - uv_a.y * uv_b.x;
+    const double area = cross(uv_a, uv_b);
     if (!(area != 0)) return {uv, Vec3(0), Vec3(0)};
     return {uv, (uv_b.y * at.du - uv_a.y * at.dv) / area, (uv_a.x * at.dv - uv_b.x * at.du) / area};
 }

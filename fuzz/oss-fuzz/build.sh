@@ -2,6 +2,7 @@
 # Builds all fuzzers as OSS-Fuzz asks for it, from the folder of the source: with CC, CXX, CFLAGS, CXXFLAGS and
 # LIB_FUZZING_ENGINE, in WORK, to OUT/NAME_fuzzer, their seeds and dictionaries beside them. scripts/fuzz --coverage runs it.
 set -euo pipefail
+source fuzz/targets.sh
 
 # The system's libraries have GCC's standard library in their interfaces; libFuzzer hides its own.
 export CFLAGS=${CFLAGS:-} CXXFLAGS=${CXXFLAGS:-}
@@ -33,6 +34,6 @@ for seeds in fuzz/seeds/*; do
     target=${seeds##*/}
     cp "$build/fuzz/trilens_fuzz" "$OUT/${target}_fuzzer"
     (cd "$seeds" && /usr/bin/python3 -m zipfile -c "$OUT/${target}_fuzzer_seed_corpus.zip" *)
-    case $target in scene | animation | gltf | sweep | test | run | wish) cp "$words" "$OUT/${target}_fuzzer.dict" ;; esac
-    [[ $target != @(laws|caustics|radiosity|terrain) ]] || printf '[libfuzzer]\nmax_len = 400\n' >"$OUT/${target}_fuzzer.options"
+    ! is_json "$target" || cp "$words" "$OUT/${target}_fuzzer.dict"
+    printf '[libfuzzer]\nmax_len = %s\n' "$(longest_of "$target")" >"$OUT/${target}_fuzzer.options"
 done

@@ -70,9 +70,9 @@ bool is_apart(const std::array<Vec2, kCount>& hull, double half) {
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 side = hull[(k + 1) % 3] - hull[k];
         const double reach = half * (std::fabs(side.x) + std::fabs(side.y));
-        double low = cross_on_plane(side, hull[0]), high = low;
+        double low = cross(side, hull[0]), high = low;
         for (std::size_t i = 1; i < kCount; ++i) {
-            const double at = cross_on_plane(side, hull[i]);
+            const double at = cross(side, hull[i]);
             low = at < low ? at : low, high = at > high ? at : high;
         }
         if (low > reach || high < -reach) return true;

@@ -105,9 +105,8 @@ FallenBeams fall(const BeamCorners& beam, const ReceiverPlane& plane, double rea
                 return fallen;
         part.measure = beam.measure;
         for (std::size_t k = 0; k < 3; ++k) part.place[k] = end[k]->place;
-        const double area = 0.5 *
-                            std::fabs(cross_on_plane(part.at[1] - part.at[0], part.at[2] - part.at[0])) *
-                            plane.unit_area;
+        const double area =
+            0.5 * std::fabs(cross(part.at[1] - part.at[0], part.at[2] - part.at[0])) * plane.unit_area;
         for (std::size_t k = 0; k < 3; ++k) {
             part.light[k] = end[k]->light;
             part.share[k] = share_of(*end[k], on[k], beam.measure / area);
@@ -138,8 +137,8 @@ FallenBeams fall(const BeamCorners& beam, const ReceiverPlane& plane, double rea
             part.at[k] = plane.at(origin + dot(w, heights) / dot(w, falls) * direction);
             part.place[k] = w[0] * end[0]->place + w[1] * end[1]->place + w[2] * end[2]->place;
         }
-        part.measure = beam.measure * std::fabs(cross_on_plane(Vec2(part.weights[1] - part.weights[0]),
-                                                               Vec2(part.weights[2] - part.weights[0])));
+        part.measure = beam.measure * std::fabs(cross(Vec2(part.weights[1] - part.weights[0]),
+                                                      Vec2(part.weights[2] - part.weights[0])));
     }
     return fallen;
 }
@@ -152,14 +151,13 @@ double side_of(const FallenBeam& fallen, std::size_t k) {
     const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
     const Vec2 &place_a = fallen.place[a], &place_b = fallen.place[b];
     const bool straight = place_a.x != place_b.x ? place_a.x < place_b.x : place_a.y < place_b.y;
-    const double side =
-        straight ? cross_on_plane(fallen.at[a], fallen.at[b]) : -cross_on_plane(fallen.at[b], fallen.at[a]);
+    const double side = straight ? cross(fallen.at[a], fallen.at[b]) : -cross(fallen.at[b], fallen.at[a]);
     if (side != 0) return side;
     return straight ? 1e-300 : -1e-300;
 }
 
 double triangle_area(const FallenBeam& fallen) {
-    return 0.5 * std::fabs(cross_on_plane(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]));
+    return 0.5 * std::fabs(cross(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]));
 }
 
 std::optional<FootprintPart> part_at_point(const FallenBeam& fallen) {
@@ -173,7 +171,7 @@ std::optional<FootprintPart> part_at_point(const FallenBeam& fallen) {
 
 Vec3 weights_at(const FallenBeam& fallen, const Vec2& at, double twice_area) {
     const Vec2 a = fallen.at[0] - at, b = fallen.at[1] - at, c = fallen.at[2] - at;
-    const Vec3 weights = Vec3(cross_on_plane(b, c), cross_on_plane(c, a), cross_on_plane(a, b)) / twice_area;
+    const Vec3 weights = Vec3(cross(b, c), cross(c, a), cross(a, b)) / twice_area;
     return glm::clamp(weights, Vec3(0), Vec3(1));
 }
 
@@ -195,12 +193,12 @@ std::optional<FootprintPart> part_at_footprint(const FallenBeam& fallen, const R
             if (inside.count < 3) return std::nullopt;
         }
     if (!is_cut) return FootprintPart{fallen.measure, Vec3(1.0 / 3)};
-    const double twice_area = cross_on_plane(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]);
+    const double twice_area = cross(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]);
     double twice_part = 0;
     Vec2 middle(0);
     for (std::size_t i = 1; i + 1 < inside.count; ++i) {
         const Vec2 a = inside.corner[0], b = inside.corner[i], c = inside.corner[i + 1];
-        const double part = cross_on_plane(b - a, c - a);
+        const double part = cross(b - a, c - a);
         twice_part += part;
         middle += part / 3 * (a + b + c);
     }

@@ -136,7 +136,7 @@ struct PlaneBeams::PartsMaker {
         for (std::size_t k = 0; k < 3; ++k)
             strength =
                 std::max({strength, sum_of(beam.corners.end[k]->light), sum_of(beam.middle[k]->light)});
-        const double area = 0.5 * std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
+        const double area = 0.5 * std::fabs(cross(at[1] - at[0], at[2] - at[0]));
         const double brightness = strength * beam.corners.measure / (params.faint_light * area);
         if (brightness < 1) return INFINITY;
         return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength) *
@@ -146,11 +146,11 @@ struct PlaneBeams::PartsMaker {
     /// How much its quarters' areas differ from a quarter, and its light from linear, as shares.
     static double unevenness(const FallenCurve& curve) {
         const auto& at = curve.at;
-        const double all = cross_on_plane(at[1] - at[0], at[2] - at[0]);
+        const double all = cross(at[1] - at[0], at[2] - at[0]);
         double most = 0;
         const std::size_t quarter[4][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}, {3, 4, 5}};
         for (const auto& q : quarter) {
-            const double area = cross_on_plane(at[q[1]] - at[q[0]], at[q[2]] - at[q[0]]);
+            const double area = cross(at[q[1]] - at[q[0]], at[q[2]] - at[q[0]]);
             most = std::max(most, std::fabs(4 * area / all - 1));
         }
         double brightest = 0, bends = 0;

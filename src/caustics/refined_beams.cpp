@@ -222,7 +222,7 @@ struct RefinedBeams::Visit {
 
     /// Whether its chords put little of what the part brings beside its place.
     static bool is_in_place(const std::array<Vec2, 6>& at, double bulge, double brightness) {
-        const double area = std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
+        const double area = std::fabs(cross(at[1] - at[0], at[2] - at[0]));
         return brightness * std::min(area, bulge * longest_side(at)) <= kMisplaced * area;
     }
 
@@ -238,11 +238,10 @@ struct RefinedBeams::Visit {
     /// Corners, then middles.
     bool is_flat(const std::array<Vec2, 6>& at, double bulge) const {
         if (bulge > kStraight * unit) return false;
-        const double all = cross_on_plane(at[1] - at[0], at[2] - at[0]);
+        const double all = cross(at[1] - at[0], at[2] - at[0]);
         if (std::fabs(all) < kThin * unit * longest_side(at)) return true;
-        const double quarter[4] = {
-            cross_on_plane(at[5] - at[0], at[4] - at[0]), cross_on_plane(at[1] - at[5], at[3] - at[5]),
-            cross_on_plane(at[3] - at[4], at[2] - at[4]), cross_on_plane(at[4] - at[3], at[5] - at[3])};
+        const double quarter[4] = {cross(at[5] - at[0], at[4] - at[0]), cross(at[1] - at[5], at[3] - at[5]),
+                                   cross(at[3] - at[4], at[2] - at[4]), cross(at[4] - at[3], at[5] - at[3])};
         return std::all_of(quarter, quarter + 4, [&](double one) {
             return std::fabs(4 * one - all) < kEvenQuarters * std::fabs(all);
         });

@@ -62,8 +62,7 @@ bool has_no_area(const std::array<Vec3, 3>& corner) {
 // The inside by areas, else the nearest of three edges.
 
 NearestToOrigin nearest_to_origin(const PlaneTriangle& p) {
-    const Vec3 areas(area_from_origin(p[1], p[2]), area_from_origin(p[2], p[0]),
-                     area_from_origin(p[0], p[1]));
+    const Vec3 areas(cross(p[1], p[2]), cross(p[2], p[0]), cross(p[0], p[1]));
     const double sum = areas.x + areas.y + areas.z;
     const Vec3 weights = areas / sum;
     if (sum != 0 && weights.x >= 0 && weights.y >= 0 && weights.z >= 0) return {weights, 0};

@@ -49,18 +49,12 @@ bool has_no_area(const std::array<Vec3, 3>& corner);
 /// The corners, in either sense; they may lie on a line or in one point.
 using PlaneTriangle = std::array<Vec2, 3>;
 
-/// Twice the signed area of the triangle from the origin over a to b.
-inline double area_from_origin(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// Whether the origin is farther than this from the triangle for sure, by one edge's line; no division, no
 /// root. What rounding does to areas is far below the room that is left for it; where it may have turned the
 /// triangle's own, the triangle is as good as its edge.
 inline bool is_surely_beyond(const PlaneTriangle& p, double distance) {
     constexpr double kRelative = 1 + 1e-6, kEdgeRounding = 1e-13;
-    const std::array<double, 3> areas{area_from_origin(p[0], p[1]), area_from_origin(p[1], p[2]),
-                                      area_from_origin(p[2], p[0])};
+    const std::array<double, 3> areas{cross(p[0], p[1]), cross(p[1], p[2]), cross(p[2], p[0])};
     const double sum = areas[0] + areas[1] + areas[2];
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 &a = p[k], &b = p[(k + 1) % 3];
@@ -78,7 +72,7 @@ inline bool surely_covers_origin(const PlaneTriangle& p, double stray) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 &a = p[k], &b = p[(k + 1) % 3];
-        const double height = area_from_origin(a, b) / length(b - a);
+        const double height = cross(a, b) / length(b - a);
         least = std::min(least, height);
         most = std::max(most, height);
     }

@@ -213,7 +213,7 @@ MapAxes given_axes(const ShadeScene& scene, const Hit& hit, const Vec3& front) {
 MapAxes own_axes(const std::array<Vec2, 3>& uv, const std::array<Vec3, 2>& sides, const Vec3& front) {
     const auto& [b, c] = sides;
     const Vec2 ub = uv[1] - uv[0], uc = uv[2] - uv[0];
-    const double area = ub.x * uc.y - ub.y * uc.x;
+    const double area = cross(ub, uc);
     if (!(area != 0)) return {};
     const Vec3 along_u = (uc.y * b - ub.y * c) / area, along_v = (ub.x * c - uc.x * b) / area;
     const Vec3 tangent = in_plane(along_u, front), bitangent = cross(front, tangent);

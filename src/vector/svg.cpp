@@ -25,10 +25,6 @@ StandardArc standard(const ScreenArc& arc) {
     return {pixel(arc[0]), pixel(arc[1]), pixel(arc[2]), arc[1].z / std::sqrt(arc[0].z * arc[2].z)};
 }
 
-double area(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 std::string number(double value, const char* format) {
     char buffer[40];
     std::snprintf(buffer, sizeof buffer, format, value);
@@ -49,14 +45,14 @@ double handle_share(double w) {
 /// barycentrics of the control triangle, over the gradient.
 double cubic_error(const StandardArc& arc) {
     const Vec2 e1 = arc.p1 - arc.p0, e2 = arc.p2 - arc.p0;
-    const double whole = area(e1, e2), share = handle_share(arc.w);
+    const double whole = cross(e1, e2), share = handle_share(arc.w);
     const Vec2 g1(e2.y / whole, -e2.x / whole),
         g2(-e1.y / whole, e1.x / whole);  // gradients of tau1 and tau2
     double worst = 0;
     for (int i = 1; i < 16; ++i) {
         const double u = i / 16.0, v = 1 - u;
         const Vec2 p = 3 * v * v * u * share * e1 + 3 * v * u * u * (e2 + share * (e1 - e2)) + u * u * u * e2;
-        const double t1 = area(p, e2) / whole, t2 = area(e1, p) / whole, t0 = 1 - t1 - t2,
+        const double t1 = cross(p, e2) / whole, t2 = cross(e1, p) / whole, t0 = 1 - t1 - t2,
                      k = 4 * arc.w * arc.w;
         const Vec2 gradient = 2 * t1 * g1 - k * (t0 * g2 - t2 * (g1 + g2));
         worst = std::max(worst, std::fabs(t1 * t1 - k * t0 * t2) / length(gradient));
@@ -67,7 +63,7 @@ double cubic_error(const StandardArc& arc) {
 void append_path(const ScreenArc& exact, int depth, std::string& path) {
     const StandardArc arc = standard(exact);
     const Vec2 chord = arc.p2 - arc.p0;
-    const double height = std::fabs(area(chord, arc.p1 - arc.p0)) / std::max(length(chord), 1e-300);
+    const double height = std::fabs(cross(chord, arc.p1 - arc.p0)) / std::max(length(chord), 1e-300);
     if (height <= kStraightPixels) {
         path += "L" + place(arc.p2);
         return;

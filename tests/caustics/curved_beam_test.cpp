@@ -125,7 +125,7 @@ TEST_CASE("what a square cuts out of pieces by boundary integrals is what clippi
                 for (std::size_t k = 0; k < 3; ++k)
                     longest = std::max(longest, length(fallen.at[k] - fallen.at[(k + 1) % 3]));
                 const double area =
-                    std::fabs(cross_on_plane(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]));
+                    std::fabs(cross(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]));
                 fallen.measure = 1;
                 const auto part = part_at_footprint(fallen, plane);
                 // Of a needle neither knows its area to more digits.

@@ -11,16 +11,24 @@
 using namespace trilens;
 using namespace trilens_test;
 
+namespace {
+
+CausticMapRequest onto_object(Id object, int side) {
+    CausticMapRequest request;
+    request.target.kind = TargetKind::kObject;
+    request.target.object = object;
+    request.target.width = request.target.height = side;
+    return request;
+}
+
+}  // namespace
+
 TEST_CASE("light that a closed mirror holds stops after maxDepth, and never comes out",
           "[laws][law][caustics]") {
     const auto world = lit_world(R"({"name": "ball", "role": "optic", "material": "mirror", "resolution": 8,
         "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
                                  R"({"type": "point", "position": [0, 1.1, 0], "intensity": 2})");
-    CausticMapRequest request;
-    request.target.kind = TargetKind::kObject;
-    request.target.object = 0;
-    request.target.width = request.target.height = 8;
-    const CausticMap map = make_caustic_map(*world, request);
+    const CausticMap map = make_caustic_map(*world, onto_object(0, 8));
     CHECK(map.flux_in.y == Approx(2 * 4 * 3.14159265358979).epsilon(1e-3));
     CHECK(map.flux_on_objects.y == 0);
     CHECK(map.flux_away.y == 0);
@@ -34,11 +42,7 @@ TEST_CASE("what a map says that ends on a floor comes to it where Fresnel's weig
     const auto world = lit_world(R"({"name": "ball", "role": "optic", "material": "dim", "resolution": 8,
         "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
                                  R"({"type": "point", "position": [0.5, 4, 1], "intensity": 20})");
-    CausticMapRequest request;
-    request.target.kind = TargetKind::kObject;
-    request.target.object = 0;
-    request.target.width = request.target.height = 32;
-    const CausticMap map = make_caustic_map(*world, request);
+    const CausticMap map = make_caustic_map(*world, onto_object(0, 32));
     CHECK(map.flux_received.y > 0.1);
     CHECK(map.flux_on_objects.y == Approx(map.flux_received.y).epsilon(3e-3));
 }
@@ -49,10 +53,7 @@ TEST_CASE("with the tolerance a map comes nearer to the truth, also where histor
         lit_world(R"({"name": "ring", "role": "optic", "material": "mirror", "resolution": 8,
         "primitive": {"type": "cylinder", "center": [0, 0.4, 0], "axis": [0, 1, 0], "radius": 2, "height": 0.8}})",
                   R"({"type": "directional", "direction": [-0.85, -0.6, -0.35], "intensity": 2})");
-    CausticMapRequest request;
-    request.target.kind = TargetKind::kObject;
-    request.target.object = 0;
-    request.target.width = request.target.height = 96;
+    CausticMapRequest request = onto_object(0, 96);
     const auto map = [&](double tolerance, bool exact) {
         request.tolerance = tolerance;
         request.exact = exact;
@@ -75,11 +76,7 @@ TEST_CASE("a map that no optic brings light to says so", "[laws][caustics]") {
     const auto world = lit_world(R"({"name": "thing", "role": "object", "material": "white",
         "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.5}})",
                                  kLamp);
-    CausticMapRequest request;
-    request.target.kind = TargetKind::kObject;
-    request.target.object = 0;
-    request.target.width = request.target.height = 8;
-    const CausticMap map = make_caustic_map(*world, request);
+    const CausticMap map = make_caustic_map(*world, onto_object(0, 8));
     CHECK(map.flux_received.y == 0);
     REQUIRE(map.warnings.size() == 1);
     CHECK(map.warnings[0] == "no light of light 0 comes to an optic: the map is dark");
@@ -96,11 +93,7 @@ TEST_CASE("a map onto faces that share texture coordinates says so", "[laws][cau
             "primitive": {"type": ")" + shape +
                                          "\", " + size + "}}",
                                      kLamp);
-        CausticMapRequest request;
-        request.target.kind = TargetKind::kObject;
-        request.target.object = 2;
-        request.target.width = request.target.height = 8;
-        const std::vector<std::string> warnings = make_caustic_map(*world, request).warnings;
+        const std::vector<std::string> warnings = make_caustic_map(*world, onto_object(2, 8)).warnings;
         const bool says = std::any_of(warnings.begin(), warnings.end(), [](const std::string& one) {
             return one.find("share texture coordinates") != std::string::npos;
         });

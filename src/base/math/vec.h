@@ -20,6 +20,11 @@ using glm::dot;
 using glm::length;
 using glm::normalize;
 
+/// Of the plane: twice the signed area of the triangle from the origin over a to b.
+inline double cross(const Vec2& a, const Vec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
 /// The triple product a . (b x c): six times the signed volume of the tetrahedron on a, b, c.
 inline double triple(const Vec3& a, const Vec3& b, const Vec3& c) {
     return dot(a, cross(b, c));

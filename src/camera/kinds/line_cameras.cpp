@@ -151,11 +151,11 @@ class GeneralLinear final : public CameraModel {
         const double depth = dot(point - eye_, axes_.forward);
         const Mat3 there = section(depth);
         const Vec2 x(there[0].x, there[0].y), y(there[1].x, there[1].y);
-        const double area = x.x * y.y - x.y * y.x;
+        const double area = cross(x, y);
         if (!(std::fabs(area) > 1e-12 * length(x) * length(y))) return std::nullopt;
         const Vec3 local = axes_.from_world(point - eye_);
         const Vec2 from(local.x - there[2].x, local.y - there[2].y);
-        const Vec2 pixel((from.x * y.y - from.y * y.x) / area, (x.x * from.y - x.y * from.x) / area);
+        const Vec2 pixel(cross(from, y) / area, cross(x, from) / area);
         return FilmImage{pixel, depth, origin_ * Vec3(pixel, 1)};
     }
     double focus() const override { return focus_; }
@@ -170,7 +170,7 @@ class GeneralLinear final : public CameraModel {
     bool is_flat(double share) const {
         const Mat3 there = section(share * focus_);
         const Vec2 x(there[0].x, there[0].y), y(there[1].x, there[1].y);
-        return !(std::fabs(x.x * y.y - x.y * y.x) > 1e-12 * length(x) * length(y));
+        return !(std::fabs(cross(x, y)) > 1e-12 * length(x) * length(y));
     }
 
     Vec3 eye_;

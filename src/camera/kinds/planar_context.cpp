@@ -21,10 +21,6 @@ constexpr std::size_t kScan =
 constexpr int kHalvings = 60;  // of one of them
 constexpr double kBeyondStrip = 2;  // a strip's formula goes on by so many of its sizes at both ends
 
-double turn_between(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// Turned back by `angle`.
 Vec2 turned_back(const Vec2& v, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -84,7 +80,7 @@ class PlanarContext final : public CameraModel {
     }
     /// Across which the point lies from the ray that meets the arc at beta.
     double miss(const Vec2& point, double beta) const {
-        return turn_between(point - flat_ground(beta), turned_back(bent_ground(beta) - eye_, beta));
+        return cross(point - flat_ground(beta), turned_back(bent_ground(beta) - eye_, beta));
     }
     double root_between(const Vec2& point, double from, double to) const;
     double nearest_miss(const Vec2& point, double from, double to) const;

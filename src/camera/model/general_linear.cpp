@@ -25,10 +25,6 @@ double longest(const std::array<Vec2, 3>& corners) {
     return std::max({length(edge(corners, 0)), length(edge(corners, 1)), length(edge(corners, 2))});
 }
 
-double cross2(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 std::optional<TwoPlanes> between_planes(const std::array<Ray, 3>& rays, const Vec3& across,
                                         double tolerance) {
     Vec3 origin(0);
@@ -86,11 +82,10 @@ std::optional<GeneralLinearCamera> general_linear_camera(const std::array<Ray, 3
     if (!planes) return std::nullopt;
     const Vec2 o1 = edge(planes->on_first, 0), o2 = -edge(planes->on_first, 2), w1 = edge(planes->way, 0),
                w2 = -edge(planes->way, 2);
-    const double c = cross2(o1, o2), b = cross2(o1, w2) + cross2(w1, o2), a = cross2(w1, w2);
+    const double c = cross(o1, o2), b = cross(o1, w2) + cross(w1, o2), a = cross(w1, w2);
     bool parallel = true;
     for (std::size_t k = 0; k < 3; ++k)
-        parallel =
-            parallel && std::fabs(cross2(edge(planes->on_first, k), edge(planes->way, k))) <= tolerance;
+        parallel = parallel && std::fabs(cross(edge(planes->on_first, k), edge(planes->way, k))) <= tolerance;
 
     GeneralLinearCamera camera;
     const auto meet = [&](double t) {

@@ -221,12 +221,12 @@ bool BeamMaker::is_one_beam_between(const std::array<CutEnd, 3>& ends, Id histor
     std::vector<MergeSample> samples{
         {Vec3(1, 0, 0), ends[0].path}, {Vec3(0, 1, 0), ends[1].path}, {Vec3(0, 0, 1), ends[2].path}};
     const Vec2 ab = ends[1].place - ends[0].place, ac = ends[2].place - ends[0].place;
-    const double area = cross_on_plane(ab, ac);
+    const double area = cross(ab, ac);
     if (area == 0) return false;
     for (const auto& [corner, of_node] : in.corners) {
         const LightPath* path = histories_.path_at(corner, history);
         const Vec2 way = grid_.place(corner) - ends[0].place;
-        const double b = cross_on_plane(way, ac) / area, c = cross_on_plane(ab, way) / area;
+        const double b = cross(way, ac) / area, c = cross(ab, way) / area;
         if (path && b >= 0 && c >= 0 && b + c <= 1) samples.push_back({Vec3(1 - b - c, b, c), path});
     }
     return is_one_beam(samples, grid_.window().measure(ends[0].place, ends[1].place, ends[2].place), merge_);
@@ -240,7 +240,7 @@ bool BeamMaker::is_cut_straight(const std::array<Vec2, 2>& line, Id history, con
                          length(grid_.place(in.corners[0].first) - grid_.place(in.corners[1].first));
     bool found[2][2] = {};  // on either side: corners that lack it, and that have it
     for (const auto& [corner, weights] : in.corners) {
-        const double beside = cross_on_plane(to - from, grid_.place(corner) - from);
+        const double beside = cross(to - from, grid_.place(corner) - from);
         if (std::fabs(beside) > slack)
             found[beside > 0][histories_.path_at(corner, history) != nullptr] = true;
     }
@@ -314,7 +314,7 @@ void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
         const auto& end = beams_.beams[i].end;
         const BeamEnd &a = beams_.ends[end[0]], &b = beams_.ends[end[1]], &c = beams_.ends[end[2]];
         const Vec2 ab = b.place - a.place, ac = c.place - a.place;
-        const double area = cross_on_plane(ab, ac);
+        const double area = cross(ab, ac);
         if (area == 0) continue;
         const double sign = area > 0 ? 1 : -1;  // weighted with the area, which cancels its own division
         const auto slope = [&](const Vec3& to_b, const Vec3& to_c) {

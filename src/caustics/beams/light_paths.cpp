@@ -9,13 +9,6 @@ namespace {
 /// Less of a ray's light than this is not followed, but on the principal path.
 constexpr double kLeastLight = 1.0 / 200;
 
-/// The share of the light that takes the way of this segment at the first optic.
-Vec3 share_at_first(const Branches& ways, const PathSegment& segment) {
-    for (const Branch& way : ways)
-        if (way.step == segment.step && way.colours == segment.colours) return way.weight;
-    return Vec3(0);
-}
-
 /// A part of a path in one medium.
 struct Stretch {
     const Ray& ray;
@@ -75,7 +68,6 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     params.only = only;
     FollowedPaths followed = follow_paths(world, {met->meeting, met->distance, around}, params);
     found.cut = followed.cut;
-    const Branches ways = branches(world, met->meeting, around, kAllColours);
     const Id medium = active_medium(world, around);
     Vec3 arriving = source.strength(ray.direction) * body_transmittance(world, medium, met->distance);
     std::vector<VeilSurface> first_veils;
@@ -87,7 +79,7 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
         LightHistory so_far;
         if (segment.parent == kNone) {
             so_far.veils = first_veils;
-            carried.push_back(share_at_first(ways, segment));
+            carried.push_back(segment.first_weight);
         } else {
             const PathSegment& before = followed.segments[segment.parent];
             so_far = found.paths[segment.parent];

@@ -53,7 +53,7 @@ Ray LightWindow::ray(const Vec2& place) const {
 
 double LightWindow::measure(const Vec2& a, const Vec2& b, const Vec2& c) const {
     const Vec2 ab = b - a, ac = c - a;
-    if (is_parallel) return 0.5 * std::fabs(ab.x * ac.y - ab.y * ac.x) * length(cross(across_u, across_v));
+    if (is_parallel) return 0.5 * std::fabs(cross(ab, ac)) * length(cross(across_u, across_v));
     // Van Oosterom and Strackee, The Solid Angle of a Plane Triangle, 1983; the directions' triple product by
     // differences of places, so that small triangles keep their digits.
     const Vec3 x = axis + a.x * across_u + a.y * across_v, y = axis + b.x * across_u + b.y * across_v,

@@ -11,10 +11,6 @@
 
 namespace trilens {
 
-inline double cross_on_plane(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// A light whose rays start in one point or are parallel.
 struct BeamSource {
     bool is_parallel = false;

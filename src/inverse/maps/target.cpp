@@ -66,8 +66,19 @@ TargetPlace rectangle_place(const FlatRectangle& r, const Vec2& pixel, const Tar
             -r.v / double(d.height)};
 }
 
-double cross2(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
+/// How the weights of a triangle's second and third corner go with steps on its texture coordinates.
+struct CornerWeights {
+    Vec2 ab{0}, ac{0};
+    double twice_area = 0;
+
+    Vec2 of(const Vec2& step) const { return {cross(step, ac) / twice_area, cross(ab, step) / twice_area}; }
+};
+
+/// None where the triangle has no area there.
+std::optional<CornerWeights> corner_weights(const std::array<Vec2, 3>& uvs) {
+    const Vec2 ab = uvs[1] - uvs[0], ac = uvs[2] - uvs[0];
+    if (cross(ab, ac) == 0) return std::nullopt;
+    return CornerWeights{ab, ac, cross(ab, ac)};
 }
 
 }  // namespace
@@ -149,11 +160,11 @@ bool Target::shares_coordinates() const {
     constexpr double kWellInside = 1e-6;  // weights, so that neighbours share nothing along their edge
     if (bins_.empty()) return false;
     const auto is_inside = [&](Id triangle, const Vec2& uv) {
-        const auto& [a, b, c] = object_->uvs[triangle];
-        const double twice = cross2(b - a, c - a);
-        if (twice == 0) return false;
-        const double second = cross2(uv - a, c - a) / twice, third = cross2(b - a, uv - a) / twice;
-        return std::min({second, third, 1 - second - third}) > kWellInside;
+        const std::array<Vec2, 3>& uvs = object_->uvs[triangle];
+        const std::optional<CornerWeights> by = corner_weights(uvs);
+        if (!by) return false;
+        const Vec2 weights = by->of(uv - uvs[0]);
+        return std::min({weights.x, weights.y, 1 - weights.x - weights.y}) > kWellInside;
     };
     for (int y = 0; y < kPlaces; ++y)
         for (int x = 0; x < kPlaces; ++x) {
@@ -168,19 +179,15 @@ bool Target::shares_coordinates() const {
 std::optional<TargetPlace> Target::object_place(const Vec2& pixel) const {
     const Vec2 uv(pixel.x / description_.width, 1 - pixel.y / description_.height);
     for (const Id t : triangles_near(uv)) {
-        const auto& uvs = object_->uvs[t];
-        const Vec2 &a = uvs[0], &b = uvs[1], &c = uvs[2];
-        const double twice = cross2(b - a, c - a);
-        if (twice == 0) continue;
-        const double second = cross2(uv - a, c - a) / twice, third = cross2(b - a, uv - a) / twice;
-        if (second < 0 || third < 0 || second + third > 1) continue;
+        const std::optional<CornerWeights> by = corner_weights(object_->uvs[t]);
+        if (!by) continue;
+        const Vec2 weights = by->of(uv - object_->uvs[t][0]);
+        if (weights.x < 0 || weights.y < 0 || weights.x + weights.y > 1) continue;
         const IdTriple& corner = object_->triangles[t];
         const Vec3 &p = object_->points[corner[0]], ab = object_->points[corner[1]] - p,
                    ac = object_->points[corner[2]] - p;
-        const auto moved = [&](const Vec2& step) {
-            return cross2(step, c - a) / twice * ab + cross2(b - a, step) / twice * ac;
-        };
-        return TargetPlace{false, p + second * ab + third * ac, moved({1.0 / description_.width, 0}),
+        const auto moved = [&](const Vec2& step) { return by->of(step).x * ab + by->of(step).y * ac; };
+        return TargetPlace{false, p + weights.x * ab + weights.y * ac, moved({1.0 / description_.width, 0}),
                            moved({0, -1.0 / description_.height})};
     }
     return std::nullopt;

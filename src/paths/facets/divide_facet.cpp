@@ -328,7 +328,7 @@ double screen_area(const std::array<Vec3, 3>& screen) {
     if (std::any_of(screen.begin(), screen.end(), behind)) return std::numeric_limits<double>::infinity();
     const auto pixel = [&](std::size_t k) { return Vec2(screen[k]) / screen[k].z; };
     const Vec2 b = pixel(1) - pixel(0), c = pixel(2) - pixel(0);
-    return 0.5 * std::fabs(b.x * c.y - b.y * c.x);
+    return 0.5 * std::fabs(cross(b, c));
 }
 
 DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,

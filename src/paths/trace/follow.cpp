@@ -254,14 +254,13 @@ int turn_of(const PathWorld& world, const NextOptic& next) {
     return coincident_order(world.optics[next.meeting.optic].mirror, next.meeting.front);
 }
 
-/// The branch that a segment took; null where there is none.
+}  // namespace
+
 const Branch* same_branch(const Branches& ways, const PathSegment& like) {
     for (const Branch& one : ways)
         if (one.step == like.step && one.colours == like.colours) return &one;
     return nullptr;
 }
-
-}  // namespace
 
 std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& leaving) {
     std::vector<NextOptic> met;

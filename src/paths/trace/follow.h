@@ -43,6 +43,9 @@ struct PathSegment {
     bool ends = true;        // it meets an object, or no other optic: nothing goes on from it
 };
 
+/// The branch that a segment takes from its start; null where there is none.
+const Branch* same_branch(const Branches& ways, const PathSegment& like);
+
 /// What follow_paths leaves out of each colour, as shares of its light, summed over paths: a path of one
 /// colour takes from that colour alone, so no share of one ray is above 1.
 struct CutPaths {

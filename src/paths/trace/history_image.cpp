@@ -22,13 +22,6 @@ struct Exit {
     Id medium = kNone;  // the body in whose glass the last ray runs; kNone: air
 };
 
-/// The branch that a segment takes; null where there is none.
-const Branch* branch_of(const Branches& ways, const PathSegment& like) {
-    for (const Branch& one : ways)
-        if (one.step == like.step && one.colours == like.colours) return &one;
-    return nullptr;
-}
-
 /// Follows the camera's ray over the history's steps, one after the other.
 std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
     const PathWorld& world = *query.world;
@@ -46,7 +39,7 @@ std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
     Colours colours = kAllColours;
     for (const PathSegment& segment : query.history) {
         const Branches ways = branches(world, at, media, colours);
-        const Branch* branch = branch_of(ways, segment);
+        const Branch* branch = same_branch(ways, segment);
         if (!branch) return std::nullopt;
         media = branch->media;
         colours = branch->colours;

@@ -32,7 +32,7 @@ double magnification(const RayMesh& mesh, Id facet, const Vec3& weights, double 
     const Vec2 pixel = Vec2(screen) / screen.z;
     const Vec2 film_b = (Vec2(sb - sa) - pixel * (sb.z - sa.z)) / screen.z;
     const Vec2 film_c = (Vec2(sc - sa) - pixel * (sc.z - sa.z)) / screen.z;
-    const double film = film_b.x * film_c.y - film_b.y * film_c.x;
+    const double film = cross(film_b, film_c);
     return area != 0 && std::isfinite(film / area) ? film / area : 0;
 }
 

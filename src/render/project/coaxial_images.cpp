@@ -30,8 +30,7 @@ std::optional<std::array<Vec2, 3>> film_corners(const RayMesh& mesh, std::size_t
 
 bool CoaxialImages::Triangle::holds(const Vec2& pixel) const {
     const auto side = [&](std::size_t a, std::size_t b) {
-        const Vec2 along = corner[b] - corner[a], to = pixel - corner[a];
-        return along.x * to.y - along.y * to.x;
+        return cross(corner[b] - corner[a], pixel - corner[a]);
     };
     const double ab = side(0, 1), bc = side(1, 2), ca = side(2, 0);
     return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);

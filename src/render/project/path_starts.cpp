@@ -79,8 +79,8 @@ FacetPaths::FacetPaths(const HistoryQuery& query, const std::array<Vec3, 3>& cor
 /// Of the facet's corners; sums to 1, and not finite where the facet has no area.
 Vec3 FacetPaths::weights(const Vec2& pixel) const {
     const Vec2 b = pixel_[1] - pixel_[0], c = pixel_[2] - pixel_[0], to = pixel - pixel_[0];
-    const double area = b.x * c.y - b.y * c.x;
-    const double of_b = (to.x * c.y - to.y * c.x) / area, of_c = (b.x * to.y - b.y * to.x) / area;
+    const double area = cross(b, c);
+    const double of_b = cross(to, c) / area, of_c = cross(b, to) / area;
     return {1 - of_b - of_c, of_b, of_c};
 }
 

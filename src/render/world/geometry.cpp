@@ -4,7 +4,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/raymesh/surface.h"
+#include "base/raymesh/affine_face.h"
 #include "scene/data/scene_digest.h"
 #include "surfaces/surfaces.h"
 
@@ -38,34 +38,27 @@ int patch_resolution(const Surface& surface) {
 
 /// Whether every face is flat and its parameters are affine: its facets are the face itself.
 bool is_polyhedron(const Surface& surface) {
-    constexpr double kRounding = 1e-13;
-    for (Id face = 0; face < surface.face_count(); ++face) {
-        if (!surface.is_flat(face)) return false;
-        const auto at = [&](const Vec2& uv) { return surface.eval_first_order(face, uv).position; };
-        const Vec3 origin = at({0, 0}), u = at({1, 0}) - origin, v = at({0, 1}) - origin;
-        const double far = length(origin) + length(u) + length(v);
-        const bool is_square = surface.domain(face) == FaceDomain::kSquare;
-        for (const Vec2& uv :
-             {Vec2(0.5, 0), Vec2(0, 0.5), Vec2(0.5, 0.5), Vec2(0.25, 0.25), is_square ? Vec2(1) : Vec2(0)})
-            if (!(length(at(uv) - (origin + uv.x * u + uv.y * v)) <= kRounding * far)) return false;
-    }
+    for (Id face = 0; face < surface.face_count(); ++face)
+        if (!affine_face(surface, face)) return false;
     return true;
 }
 
-int fine_resolution(const Surface& surface) {
+/// Facets of all faces together, and squares along a side of each.
+struct FineGrid {
+    std::size_t facets = 0;
+    int least = 0, most = 0;
+};
+
+int fine_resolution(const Surface& surface, const FineGrid& grid) {
     if (is_polyhedron(surface)) return 1;
-    const double per_face = static_cast<double>(kFineFacets) /
-                            (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
-    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
-    return resolution_within(surface, n, kMostFineFacets);
+    const double faces = static_cast<double>(std::max<std::size_t>(1, surface.face_count())),
+                 per_face = static_cast<double>(grid.facets) / (2.0 * faces);
+    return std::clamp(static_cast<int>(std::sqrt(per_face)), grid.least, grid.most);
 }
 
-/// The same, of many faces.
-int fine_resolution_of_many(const Surface& surface) {
-    if (is_polyhedron(surface)) return 1;
-    const double per_face =
-        static_cast<double>(kFineOfMany) / (2.0 * static_cast<double>(surface.face_count()));
-    return std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFineOfMany, kMaxFineOfMany);
+int fine_resolution(const Surface& surface) {
+    return resolution_within(surface, fine_resolution(surface, {kFineFacets, kMinFine, kMaxFine}),
+                             kMostFineFacets);
 }
 
 /// Prepared as far as rays come, where the surface says what holds its parts.
@@ -74,7 +67,8 @@ std::unique_ptr<LimitTracer> make_limit_tracer(const Surface& surface) {
     std::vector<Box> hulls;
     if (surface.face_count() > kManyFaces) hulls = face_hulls(surface);
     const bool by_face = !hulls.empty();
-    const int n = by_face ? fine_resolution_of_many(surface) : fine_resolution(surface),
+    const int n = by_face ? fine_resolution(surface, {kFineOfMany, kMinFineOfMany, kMaxFineOfMany})
+                          : fine_resolution(surface),
               steps = by_face ? n : kPartSteps;
     std::vector<GridPart> parts = grid_parts(surface, n, steps);
     std::vector<Box> boxes = by_face ? std::move(hulls) : part_boxes(surface, n, parts);

@@ -47,14 +47,10 @@ class Opacity {
 
 using GridPolygon = std::vector<GridPlace>;
 
-double across(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// A convex polygon's part on the left of the line from a to b [Sutherland and Hodgman 1974].
 GridPolygon left_of(const GridPolygon& polygon, const GridPlace& a, const GridPlace& b) {
     GridPolygon kept;
-    const auto side = [&](const GridPlace& p) { return across(b - a, p - a); };
+    const auto side = [&](const GridPlace& p) { return cross(b - a, p - a); };
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         const GridPlace &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
         const double at_p = side(p), at_q = side(q);
@@ -89,7 +85,7 @@ class TriangleCut {
   public:
     TriangleCut(const std::array<GridPlace, 3>& corners, const Opacity& opacity)
         : corners_(corners), opacity_(opacity) {
-        turn_ = across(corners[1] - corners[0], corners[2] - corners[0]);
+        turn_ = cross(corners[1] - corners[0], corners[2] - corners[0]);
     }
 
     bool is_too_fine() const {
@@ -135,8 +131,8 @@ class TriangleCut {
 
     /// Barycentric coordinates of the second and third corners.
     Vec2 weights(const GridPlace& p) const {
-        return {across(p - corners_[0], corners_[2] - corners_[0]) / turn_,
-                across(corners_[1] - corners_[0], p - corners_[0]) / turn_};
+        return {cross(p - corners_[0], corners_[2] - corners_[0]) / turn_,
+                cross(corners_[1] - corners_[0], p - corners_[0]) / turn_};
     }
 
   private:
@@ -204,7 +200,7 @@ class MeshCutter {
         const Opacity opacity(material, cutoff);
         std::array<GridPlace, 3> corners;
         for (std::size_t k = 0; k < 3; ++k) corners[k] = opacity.place(uvs[t][k]);
-        if (!(std::abs(across(corners[1] - corners[0], corners[2] - corners[0])) > 1e-12)) return keep(t);
+        if (!(std::abs(cross(corners[1] - corners[0], corners[2] - corners[0])) > 1e-12)) return keep(t);
         TriangleCut pieces(corners, opacity);
         if (pieces.is_too_fine()) {
             ++done_.too_fine;

@@ -27,7 +27,7 @@ struct GrowingU {
 
 GrowingU growing_u(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv) {
     const Vec2 b = uv[1] - uv[0], c = uv[2] - uv[0];
-    const double area = b.x * c.y - b.y * c.x;
+    const double area = cross(b, c);
     if (!(area != 0)) return {};
     const int side = area > 0 ? 1 : -1;
     return {normalize_or_zero(double(side) * (c.y * (p[1] - p[0]) - b.y * (p[2] - p[0]))), side};

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/raymesh/affine_face.h"
+
 namespace trilens {
 namespace {
 
 constexpr double kCoaxialRounding = 64 * std::numeric_limits<double>::epsilon();
 constexpr double kParallelSine = 1e-14;    // of the angle between planes that count as parallel
-constexpr double kAffineRounding = 1e-13;  // of a face's coordinates
 constexpr double kFaceBorder = 1e-12;      // in (u, v): a place beyond a border by no more lies on it
 constexpr double kOnAxis = 1e-8;           // of the way to the point: so near to the axis it counts as on it
 /// Newton's method ends where its step, as a share, has a square below rounding.
@@ -38,21 +39,15 @@ std::optional<CoaxialPath> CoaxialChain::path_to(const Vec3& point) const {
 
 // Parallel planes.
 
-/// None where the face is not flat, or its parameters are not affine.
+/// None where affine_face has none.
 std::optional<CoaxialChain::PlaneFace> CoaxialChain::plane_face(const Surface& surface, Id face) {
-    if (!surface.is_flat(face)) return std::nullopt;
-    const auto at = [&](const Vec2& uv) { return surface.eval_first_order(face, uv).position; };
+    const std::optional<AffineFace> affine = affine_face(surface, face);
+    if (!affine) return std::nullopt;
+    const Vec3 &u = affine->by_u, &v = affine->by_v, across = cross(u, v);
     PlaneFace plane;
     plane.domain = surface.domain(face);
-    plane.corner = at({0, 0});
+    plane.corner = affine->corner;
     plane.normal = surface.eval_first_order(face, {0.25, 0.25}).normal;
-    const Vec3 u = at({1, 0}) - plane.corner, v = at({0, 1}) - plane.corner, across = cross(u, v);
-    const double far = length(plane.corner) + length(u) + length(v);
-    const bool is_square = plane.domain == FaceDomain::kSquare;
-    for (const Vec2& uv :
-         {Vec2(0.5, 0), Vec2(0, 0.5), Vec2(0.5, 0.5), Vec2(0.25, 0.25), is_square ? Vec2(1) : Vec2(0)})
-        if (!(length(at(uv) - (plane.corner + uv.x * u + uv.y * v)) <= kAffineRounding * far))
-            return std::nullopt;
     if (plane.normal == Vec3(0) || !(dot(across, across) > 0)) return std::nullopt;
     plane.by_u = cross(v, across) / dot(u, cross(v, across));
     plane.by_v = cross(across, u) / dot(v, cross(across, u));

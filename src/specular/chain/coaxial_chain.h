@@ -51,7 +51,6 @@ class CoaxialChain {
 
     /// Spheres have no other faces that a path of these events may meet instead; planes may.
     bool are_planes() const { return are_planes_; }
-    std::span<const ChainFace> faces() const { return faces_; }
 
   private:
     /// A plane's face: corner + u du + v dv.
