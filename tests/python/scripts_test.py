@@ -1,4 +1,5 @@
-"""The shell scripts: what proves something can fail, and packages are asked for by purpose."""
+"""The scripts: what proves something can fail, packages are asked for by purpose, and help is only said."""
+import os
 import re
 import subprocess
 import zlib
@@ -7,8 +8,8 @@ import pytest
 
 from conftest import SOURCE
 
-SHELL = [file for file in [*(SOURCE / "scripts").iterdir(), SOURCE / ".ci/run"]
-         if file.is_file() and file.read_bytes().startswith(b"#!/usr/bin/env bash")]
+SCRIPTS = sorted(file for file in (SOURCE / "scripts").iterdir() if file.is_file() and file.read_bytes().startswith(b"#!"))
+SHELL = [file for file in [*SCRIPTS, SOURCE / ".ci/run"] if file.read_bytes().startswith(b"#!/usr/bin/env bash")]
 
 
 @pytest.mark.parametrize("file", SHELL, ids=lambda file: file.name)
@@ -18,6 +19,14 @@ def test_no_command_that_must_fail_is_passed_over(file):
             not re.search(r"\b(if|elif|while|until)\s+!\s", line)]
     assert bare == []
     assert "set -euo pipefail" in file.read_text()
+
+
+@pytest.mark.parametrize("file", SCRIPTS, ids=lambda file: file.name)
+def test_a_script_that_is_asked_for_help_only_says_what_it_does(file):
+    run = subprocess.run([file, "--help"], capture_output=True, text=True, timeout=20, env={**os.environ, "PATH": "/usr/bin:/bin"})
+    assert (run.returncode, run.stderr) == (0, "")
+    head = file.read_text().splitlines()[1].strip('"# ')
+    assert head in run.stdout if "argparse" not in file.read_text() else run.stdout.startswith("usage: ")
 
 
 def test_each_package_is_named_once_for_a_purpose():
