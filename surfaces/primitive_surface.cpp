@@ -42,10 +42,15 @@ class PrimitiveSurface final : public Surface {
     }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
+        SurfacePoint point = eval_first_order(face, uv);
+        for (Vec3* vector : {&point.duu, &point.duv, &point.dvv}) *vector = world_from_local_ * *vector;
+        return point;
+    }
+    /// The second derivatives stay in the shape's frame.
+    SurfacePoint eval_first_order(Id face, const Vec2& uv) const override {
         const auto clamp = [](double x) { return x > 0 ? std::min(x, 1.0) : 0.0; };
         SurfacePoint point = shape_->eval(face, {clamp(uv.x), clamp(uv.y)});
-        for (Vec3* vector :
-             {&point.position, &point.du, &point.dv, &point.duu, &point.duv, &point.dvv, &point.normal})
+        for (Vec3* vector : {&point.position, &point.du, &point.dv, &point.normal})
             *vector = world_from_local_ * *vector;
         point.position += center_;
         return point;

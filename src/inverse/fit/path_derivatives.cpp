@@ -26,40 +26,47 @@ SurfacePoint point_on(const FitOptic& optic, const FitOptic& nominal, const Opti
         optic, optic.surface == nominal.surface ? event.as_built : optic.surface->eval(event.face, event.uv));
 }
 
-/// A path at its fixed places on the surfaces of a scene.
-struct FixedPath {
-    std::vector<SurfacePoint> points;
-    PerEvent<Vec2> law;
-};
-
-/// With the surfaces, the glass and the camera that `moved` has.
-FixedPath fixed_path(const FitScene& scene, const FitScene& moved, const ShownPlace& place,
-                     std::span<const OpticEvent> events, const Vec3& point) {
-    FixedPath path;
-    for (const OpticEvent& event : events)
-        path.points.push_back(is_same(moved.optics[event.optic], scene.optics[event.optic])
-                                  ? event.point
-                                  : point_on(moved.optics[event.optic], scene.optics[event.optic], event));
-    path.law = chain_law(chain_bend(chain_of(moved, place.camera, events, point), path.points), path.points);
-    return path;
-}
-
-bool touches(const ParameterDifference& parameter, std::span<const OpticEvent> events) {
-    if (parameter.moves_camera) return true;
-    for (const OpticEvent& event : events) {
-        if (!is_same(parameter.minus.optics[event.optic], parameter.plus.optics[event.optic])) return true;
-        for (const Id medium : {event.before, event.after})
-            if (index_of(parameter.minus, medium) != index_of(parameter.plus, medium)) return true;
+/// How far the surfaces of the path move its image, at its fixed places on them.
+Vec2 by_surfaces(const FitScene& scene, const ParameterDifference& parameter,
+                 std::span<const OpticEvent> events, const PathSensitivity& sensitivity) {
+    Vec2 moved(0);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        const std::size_t optic = events[i].optic;
+        const FitOptic &minus = parameter.minus.optics[optic], &plus = parameter.plus.optics[optic];
+        if (is_same(minus, plus)) continue;
+        const FitOptic& nominal = scene.optics[optic];
+        moved += sensitivity.by_surface(i, point_on(minus, nominal, events[i]),
+                                        point_on(plus, nominal, events[i]));
     }
-    return false;
+    return moved;
 }
 
-/// How the cameras of both sides show two places of theirs differently; nothing where one shows none.
-Vec2 shown_change(const ParameterDifference& parameter, const ShownPlace& place, const Vec3& low,
-                  const Vec3& high) {
-    const std::optional<Vec2> before = film_pixel(parameter.minus.cameras[place.camera], low, place.pixel),
-                              after = film_pixel(parameter.plus.cameras[place.camera], high, place.pixel);
+/// And the glass along it.
+Vec2 by_glass(const ParameterDifference& parameter, std::span<const OpticEvent> events,
+              const PathSensitivity& sensitivity) {
+    Vec2 moved(0);
+    for (std::size_t s = 0; s <= events.size(); ++s) {
+        const Id medium = s == 0 ? events[0].before : events[s - 1].after;
+        moved +=
+            sensitivity.by_index(s, index_of(parameter.plus, medium) - index_of(parameter.minus, medium));
+    }
+    return moved;
+}
+
+/// How the cameras of both sides show a place differently; nothing where one shows it nowhere.
+Vec2 shown_change(const ParameterDifference& parameter, const ShownPlace& place, const Vec3& point) {
+    const std::optional<Vec2> before = film_pixel(parameter.minus.cameras[place.camera], point, place.pixel),
+                              after = film_pixel(parameter.plus.cameras[place.camera], point, place.pixel);
     return before && after ? *after - *before : Vec2(0);
+}
+
+/// And the camera: its eye, or the direction of its rays, and what its film shows of the place.
+Vec2 by_camera(const ParameterDifference& parameter, const ShownPlace& place, const Vec3& first,
+               const PathSensitivity& sensitivity) {
+    if (!parameter.moves_camera) return Vec2(0);
+    const Vec3 eye = chain_eye(parameter.plus.cameras[place.camera])->place -
+                     chain_eye(parameter.minus.cameras[place.camera])->place;
+    return shown_change(parameter, place, first) + sensitivity.by_eye(eye);
 }
 
 }  // namespace
@@ -75,8 +82,7 @@ std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const Sho
     if (events.empty()) {
         found.by_point = film->slope;
         for (const ParameterDifference& parameter : parameters) {
-            const Vec2 moved =
-                parameter.moves_camera ? shown_change(parameter, place, point, point) : Vec2(0);
+            const Vec2 moved = parameter.moves_camera ? shown_change(parameter, place, point) : Vec2(0);
             found.by_parameter.push_back(moved / (2 * parameter.step));
         }
         return found;
@@ -87,19 +93,10 @@ std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const Sho
     if (!sensitivity.is_regular()) return std::nullopt;
     found.by_point = sensitivity.by_point();
     for (const ParameterDifference& parameter : parameters) {
-        if (!touches(parameter, events)) {
-            found.by_parameter.emplace_back(0);
-            continue;
-        }
-        const FixedPath low = fixed_path(scene, parameter.minus, place, events, point),
-                        high = fixed_path(scene, parameter.plus, place, events, point);
-        const Vec3 &from = low.points[0].position, &to = high.points[0].position;
-        const Vec2 change = parameter.moves_camera
-                                ? shown_change(parameter, place, from, to)
-                                : Vec2(dot(film->slope[0], to - from), dot(film->slope[1], to - from));
-        PerEvent<Vec2> law = high.law;
-        for (std::size_t i = 0; i < law.size(); ++i) law[i] -= low.law[i];
-        found.by_parameter.push_back(sensitivity.moved(change, law) / (2 * parameter.step));
+        const Vec2 moved = by_surfaces(scene, parameter, events, sensitivity) +
+                           by_glass(parameter, events, sensitivity) +
+                           by_camera(parameter, place, points[0].position, sensitivity);
+        found.by_parameter.push_back(moved / (2 * parameter.step));
     }
     return found;
 }

@@ -15,22 +15,32 @@ namespace {
 /// Pixels move by differences of a step of this share of the distance, where the camera has no linear map.
 constexpr double kPlaceStep = 1e-6;
 
-/// The glass of each event, and what happens there; `surface_of` and `material_of` are asked per optic.
-template <typename SurfaceOf, typename MaterialOf>
-PerEvent<ChainEvent> chain_events(std::span<const PathEvent> events, std::span<const EventMedia> media,
-                                  Colours colours, const SurfaceOf& surface_of,
-                                  const MaterialOf& material_of) {
-    const auto index_of = [&](Id body) { return body == kNone ? 1 : ior_of(material_of(body), colours); };
-    PerEvent<ChainEvent> chain;
-    for (std::size_t i = 0; i < events.size(); ++i)
-        chain.push_back({surface_of(events[i].optic), index_of(media[i].before), index_of(media[i].after),
-                         events[i].event == Event::kReflect});
-    return chain;
+/// The media of a start's events, from that of the camera's ray at its pixel.
+std::optional<PerEvent<EventMedia>> media_of(const World& world, const Frame& frame,
+                                             const ChainStart& start) {
+    Media around;
+    if (!frame.camera_media.none()) {
+        const std::optional<Ray> view = exact_ray(frame.camera, start.pixel);
+        if (!view) return std::nullopt;
+        around = frame.camera_media.of(*view);
+    }
+    return event_media(world, around, start.events);
 }
 
-/// Green's where glass disperses, but that of `ior` where the path has one event.
-Colours usual_colours(std::span<const PathEvent> events) {
-    return events.size() > 1 ? Colours{1} : kAllColours;
+/// Its chain through them, from `eye` to a point at the world's origin.
+PathChain chain_through(const World& world, const ChainEnd& eye, const ChainStart& start,
+                        std::span<const EventMedia> media) {
+    const Colours colours = start.colours.value_or(usual_colours(start.events.size()));
+    const auto index_of = [&](Id body) {
+        return body == kNone ? 1 : ior_of(world.scene.materials[world.optics[body].material], colours);
+    };
+    PathChain chain{eye, {}, {}};
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const PathEvent& event = start.events[i];
+        chain.events.push_back({world.optics[event.optic].surface.get(), index_of(media[i].before),
+                                index_of(media[i].after), event.event == Event::kReflect});
+    }
+    return chain;
 }
 
 }  // namespace
@@ -63,18 +73,6 @@ std::optional<PerEvent<EventMedia>> event_media(const World& world, const Media&
         media.push_back({active(sides->before), active(now)});
     }
     return media;
-}
-
-std::optional<PathChain> make_chain(const ChainModel& model, std::span<const PathEvent> events,
-                                    std::span<const EventMedia> media, const ProjectedPoint& point) {
-    const std::optional<ChainEnd> eye = chain_eye(*model.camera);
-    if (!eye || events.empty()) return std::nullopt;
-    return PathChain{
-        *eye,
-        {point.place, point.is_direction},
-        chain_events(
-            events, media, usual_colours(events), [&](Id optic) { return model.surfaces[optic]; },
-            [&](Id optic) -> const Material& { return model.scene->materials[model.materials[optic]]; })};
 }
 
 std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near) {
@@ -139,23 +137,9 @@ HistoryQuery history_query(const World& world, const Frame& frame, std::span<con
 std::optional<PathChain> chain_from(const World& world, const Frame& frame, const ChainStart& start) {
     const std::optional<ChainEnd> eye = chain_eye(frame.camera);
     if (start.events.empty() || !eye) return std::nullopt;
-    Media around;
-    if (!frame.camera_media.none()) {
-        const std::optional<Ray> view = exact_ray(frame.camera, start.pixel);
-        if (!view) return std::nullopt;
-        around = frame.camera_media.of(*view);
-    }
-    const auto media = event_media(world, around, start.events);
+    const auto media = media_of(world, frame, start);
     if (!media) return std::nullopt;
-    return PathChain{
-        *eye,
-        {},
-        chain_events(
-            start.events, *media, start.colours.value_or(usual_colours(start.events)),
-            [&](Id optic) { return world.optics[optic].surface.get(); },
-            [&](Id optic) -> const Material& {
-                return world.scene.materials[world.optics[optic].material];
-            })};
+    return chain_through(world, *eye, start, *media);
 }
 
 std::optional<SolvedChain> solve_path(const World& world, const Frame& frame, const ChainStart& start,
@@ -208,6 +192,22 @@ std::optional<ChainImage> solve_image(const World& world, const Frame& frame, co
     image.is_regular = sensitivity.is_regular();
     image.derivative = sensitivity.by_point();
     return image;
+}
+
+std::optional<ImageSensitivity> image_sensitivity(const World& world, const Frame& frame,
+                                                  const ChainStart& start, const ProjectedPoint& point) {
+    const std::optional<ChainEnd> eye = chain_eye(frame.camera);
+    if (start.events.empty() || !eye) return std::nullopt;
+    const auto media = media_of(world, frame, start);
+    if (!media) return std::nullopt;
+    PathChain chain = chain_through(world, *eye, start, *media);
+    chain.point = {point.place, point.is_direction};
+    PerEvent<SurfacePoint> points;
+    for (std::size_t i = 0; i < start.events.size(); ++i)
+        points.push_back(chain.events[i].surface->eval(start.events[i].face, start.events[i].uv));
+    const auto film = film_place(frame.camera, points.front().position, start.pixel);
+    if (!film) return std::nullopt;
+    return ImageSensitivity{*media, *film, PathSensitivity(chain, points, film->slope)};
 }
 
 }  // namespace trilens

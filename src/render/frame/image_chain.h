@@ -20,14 +20,6 @@ struct ProjectedPoint {
     bool is_direction = false;
 };
 
-/// What a chain depends on beside its path: the camera, the surfaces and the glass of a scene.
-struct ChainModel {
-    const Scene* scene = nullptr;
-    const Camera* camera = nullptr;
-    std::span<const Surface* const> surfaces;  // per optic
-    std::span<const Id> materials;             // per optic
-};
-
 /// Per event the body of glass before it and behind it; kNone: air.
 struct EventMedia {
     Id before = kNone, after = kNone;
@@ -39,11 +31,6 @@ std::optional<PerEvent<EventMedia>> event_media(const World& world, const Media&
 
 /// Where all paths of a camera begin: its eye, or the direction of parallel rays; none where it has neither.
 std::optional<ChainEnd> chain_eye(const Camera& camera);
-
-/// The chain of a path; none for cameras whose rays meet in no eye and are not parallel. Of glass that
-/// disperses green's index counts, but that of `ior` where the path has one event.
-std::optional<PathChain> make_chain(const ChainModel& model, std::span<const PathEvent> events,
-                                    std::span<const EventMedia> media, const ProjectedPoint& point);
 
 /// How a camera shows a place: the pixel next to `near`, and how it moves with the place (rows x, y: pixels
 /// per scene unit); none where it shows it nowhere.
@@ -64,12 +51,17 @@ HistoryQuery history_query(const World& world, const Frame& frame, std::span<con
 struct ChainStart {
     std::span<const PathEvent> events;  // of each the optic, what happens, the side, the face and the place
     Vec2 pixel{0};                      // about where the film shows it
-    // Whose index is taken where glass disperses; none: as make_chain has it.
-    std::optional<Colours> colours{};
+    std::optional<Colours> colours{};   // whose index is taken where glass disperses; none: usual_colours()
 };
 
-/// The chain over a start's events, with the media that the camera's ray at its pixel meets and a point at the
-/// world's origin; none as make_chain, or where the media cannot be told.
+/// Whose index counts where glass disperses: green's, but that of `ior` where a path has one event.
+inline Colours usual_colours(std::size_t events) {
+    return events > 1 ? Colours{1} : kAllColours;
+}
+
+/// The chain over a start's events, with the media that the camera's ray at its pixel meets and a point at
+/// the world's origin; none for cameras whose rays meet in no eye and are not parallel, or where the media
+/// cannot be told.
 std::optional<PathChain> chain_from(const World& world, const Frame& frame, const ChainStart& start);
 
 /// A path of light, and where it meets each surface.
@@ -95,5 +87,16 @@ struct ChainImage {
 };
 std::optional<ChainImage> solve_image(const World& world, const Frame& frame, const ChainStart& start,
                                       const ProjectedPoint& point);
+
+/// How an image moves whose path is known.
+struct ImageSensitivity {
+    PerEvent<EventMedia> media;
+    FilmPlace film;
+    PathSensitivity path;
+};
+/// Of the path through a start's places as they are; none as chain_from, and where the camera does not show
+/// the first of them.
+std::optional<ImageSensitivity> image_sensitivity(const World& world, const Frame& frame,
+                                                  const ChainStart& start, const ProjectedPoint& point);
 
 }  // namespace trilens

@@ -82,9 +82,9 @@ Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, d
 
 // How images move with the numbers of a scene: the implicit function theorem on Fermat's stationarity.
 
-/// A PathSensitivity per image serves all numbers. How the law and the camera's own part move with a number,
-/// both at fixed places on the surfaces, are central differences of exact evaluations of the scene a step to
-/// either side: no image is searched for again. Thread-safe to read; the world must live longer.
+/// A PathSensitivity per image serves all numbers. How surfaces, glass and the camera move with a number, at
+/// fixed places on the surfaces, are central differences of a scene a step to either side: no image is
+/// searched for again. Thread-safe to read; world and frame must live longer.
 class ParameterDerivatives {
   public:
     /// `camera`: the frame's, index into Scene::cameras. `pointers`: as find_numbers has them. Throws
@@ -99,22 +99,18 @@ class ParameterDerivatives {
     /// Per number how the image's pixel moves with it, in pixels per unit of the number; empty where that is
     /// not known: facets' images, those at a caustic, and cameras without an eye or parallel rays.
     std::vector<Vec2> of(const WorldImage& image, const ProjectedPoint& point) const;
+    /// The same of an image over optics whose image_sensitivity() is known.
+    std::vector<Vec2> of(const WorldImage& image, const ImageSensitivity& sensitivity) const;
 
   private:
-    struct Model;
-    struct Step {
-        std::unique_ptr<Model> before, after;
-        double size = 0;  // from one to the other
-    };
+    struct Step;
 
     std::vector<Vec2> of_direct(const Vec2& pixel, const ProjectedPoint& point) const;
-    std::vector<Vec2> of_chain(const WorldImage& image, const ProjectedPoint& point) const;
 
     const World& world_;
-    const CameraMedia& camera_media_;
+    const Frame& frame_;
     std::vector<SceneNumber> numbers_;
     std::vector<Step> steps_;
-    std::unique_ptr<Model> now_;
     double size_ = 1;  // of the optics and the eye about them
 };
 

@@ -38,72 +38,111 @@ double size_of(const World& world, const Frame& frame) {
     return size > 0 && std::isfinite(size) ? size : 1;
 }
 
-/// F of a chain at fixed places, and where the camera shows the first of them.
-struct ChainState {
-    PerEvent<Vec2> law;
-    Vec2 pixel{0};
+/// The optics' meshes and the camera as digests: what stays is not made again.
+struct PartDigests {
+    std::string camera;
+    std::vector<std::string> meshes;  // per optic
 };
+
+PartDigests part_digests(const World& world, const Scene& scene, std::size_t camera) {
+    PartDigests digests{camera_digest(scene.cameras[camera]), {}};
+    for (const Optic& optic : world.optics) digests.meshes.push_back(mesh_digest(scene.meshes[optic.mesh]));
+    return digests;
+}
+
+Vec3 eye_change(const Camera& before, const Camera& after) {
+    const std::optional<ChainEnd> from = chain_eye(before), to = chain_eye(after);
+    return from && to ? to->place - from->place : Vec3(0);
+}
 
 }  // namespace
 
-/// A scene as chains depend on it.
-struct ParameterDerivatives::Model {
-    Scene scene;
-    Camera camera;
-    std::vector<std::shared_ptr<const Surface>> surfaces;
-    std::vector<const Surface*> pointers;
-    std::vector<Id> materials;
-    std::vector<char> is_moved;  // per optic: its surface is another one than the world's
+/// What a number moves, from a step below its value to one above; null or empty what stays.
+struct ParameterDerivatives::Step {
+    struct Surfaces {
+        std::shared_ptr<const Surface> below, above;
+    };
+    struct Cameras {
+        Camera below, above;
+        Vec3 eye{0};  // from one to the other; of parallel rays the direction
 
-    ChainModel chain() const { return {&scene, &camera, pointers, materials}; }
+        /// How the film shows two places, one for each, differently; none where one of them shows none.
+        std::optional<Vec2> change(const Vec3& low, const Vec3& high, const Vec2& near) const {
+            const auto from = film_pixel(below, low, near), to = film_pixel(above, high, near);
+            if (!from || !to) return std::nullopt;
+            return *to - *from;
+        }
+    };
 
-    /// At the places of `events`, whose points on surfaces that are the world's are `known`.
-    std::optional<ChainState> state(std::span<const PathEvent> events, std::span<const EventMedia> media,
-                                    const ProjectedPoint& point, std::span<const SurfacePoint> known,
-                                    const Vec2& near) const {
-        const std::optional<PathChain> chain = make_chain(this->chain(), events, media, point);
-        if (!chain) return std::nullopt;
-        std::vector<SurfacePoint> points(known.begin(), known.end());
-        for (std::size_t i = 0; i < events.size(); ++i)
-            if (is_moved[events[i].optic])
-                points[i] = pointers[events[i].optic]->eval_first_order(events[i].face, events[i].uv);
-        const std::optional<Vec2> pixel = film_pixel(camera, points.front().position, near);
-        if (!pixel) return std::nullopt;
-        return ChainState{chain_law(chain_bend(*chain, points), points), *pixel};
-    }
+    double size = 0;  // between both
+    std::unique_ptr<const Cameras> cameras;
+    std::vector<Surfaces> surfaces;            // per optic
+    std::vector<std::array<double, 2>> glass;  // per optic: how its index changes for usual_colours(1), (2)
+
+    /// Of the image's pixel; none where the camera does not show it on both sides.
+    std::optional<Vec2> moved(const WorldImage& image, const ImageSensitivity& by) const;
 };
+
+std::optional<Vec2> ParameterDerivatives::Step::moved(const WorldImage& image,
+                                                      const ImageSensitivity& by) const {
+    const std::span<const PathEvent> events = image.events;
+    Vec2 moved(0);
+    if (cameras) {
+        const Vec3& first = events.front().point;
+        const std::optional<Vec2> shown = cameras->change(first, first, image.pixel);
+        if (!shown) return std::nullopt;
+        moved += *shown + by.path.by_eye(cameras->eye);
+    }
+    for (std::size_t i = 0; !surfaces.empty() && i < events.size(); ++i) {
+        const Surfaces& surface = surfaces[events[i].optic];
+        if (!surface.below) continue;
+        moved += by.path.by_surface(i, surface.below->eval_first_order(events[i].face, events[i].uv),
+                                    surface.above->eval_first_order(events[i].face, events[i].uv));
+    }
+    for (std::size_t s = 0; !glass.empty() && s <= events.size(); ++s) {
+        const Id body = s == 0 ? by.media[0].before : by.media[s - 1].after;
+        if (body != kNone) moved += by.path.by_index(s, glass[body][events.size() > 1 ? 1 : 0]);
+    }
+    return moved / size;
+}
 
 ParameterDerivatives::ParameterDerivatives(const World& world, const Frame& frame, std::size_t camera,
                                            std::span<const std::string> pointers)
     : world_(world),
-      camera_media_(frame.camera_media),
+      frame_(frame),
       numbers_(find_numbers(world.scene, pointers)),
-      now_(std::make_unique<Model>()),
       size_(size_of(world, frame)) {
-    std::vector<std::string> digests;
-    now_->camera = frame.camera;
-    now_->scene = world.scene;
-    for (const Optic& optic : world.optics) {
-        digests.push_back(mesh_digest(world.scene.meshes[optic.mesh]));
-        now_->surfaces.push_back(optic.surface);
-        now_->pointers.push_back(optic.surface.get());
-        now_->materials.push_back(optic.material);
-        now_->is_moved.push_back(false);
-    }
-    const auto model_at = [&](SceneNumber number, double value) {
+    const PartDigests now = part_digests(world, world.scene, camera);
+    const auto scene_at = [&](SceneNumber number, double value) {
         number.value = value;
-        auto model = std::make_unique<Model>();
-        model->scene = scene_with(world.scene, number);
-        model->camera = make_camera_rays(model->scene, camera);
-        model->materials = now_->materials;
-        for (std::size_t i = 0; i < world.optics.size(); ++i) {
-            const Id mesh = world.optics[i].mesh;
-            model->is_moved.push_back(mesh_digest(model->scene.meshes[mesh]) != digests[i]);
-            model->surfaces.push_back(model->is_moved[i] ? make_optic_surface(model->scene, mesh, {})
-                                                         : world.optics[i].surface);
-            model->pointers.push_back(model->surfaces[i].get());
+        return scene_with(world.scene, number);
+    };
+    const auto surface_of = [&](const Scene& scene, std::size_t optic) {
+        return std::shared_ptr<const Surface>(make_optic_surface(scene, world.optics[optic].mesh, {}));
+    };
+    const auto fill = [&](const Scene& below, const Scene& above, Step& step) {
+        const PartDigests low = part_digests(world, below, camera), high = part_digests(world, above, camera);
+        if (low.camera != now.camera || high.camera != now.camera) {
+            const Camera before = make_camera_rays(below, camera), after = make_camera_rays(above, camera);
+            step.cameras = std::make_unique<const Step::Cameras>(
+                Step::Cameras{before, after, eye_change(before, after)});
         }
-        return model;
+        std::vector<Step::Surfaces> surfaces(world.optics.size());
+        std::vector<std::array<double, 2>> glass(world.optics.size());
+        for (std::size_t i = 0; i < world.optics.size(); ++i) {
+            if (low.meshes[i] != now.meshes[i] || high.meshes[i] != now.meshes[i])
+                surfaces[i] = {surface_of(below, i), surface_of(above, i)};
+            const Id material = world.optics[i].material;
+            for (const std::size_t events : {1, 2})
+                glass[i][events - 1] = ior_of(above.materials[material], usual_colours(events)) -
+                                       ior_of(below.materials[material], usual_colours(events));
+        }
+        if (std::any_of(surfaces.begin(), surfaces.end(),
+                        [](const auto& one) { return one.below != nullptr; }))
+            step.surfaces = std::move(surfaces);
+        if (std::any_of(glass.begin(), glass.end(),
+                        [](const auto& one) { return one[0] != 0 || one[1] != 0; }))
+            step.glass = std::move(glass);
     };
     steps_.resize(numbers_.size());
     parallel_for(numbers_.size(), 1, [&](std::size_t from, std::size_t to) {
@@ -111,8 +150,9 @@ ParameterDerivatives::ParameterDerivatives(const World& world, const Frame& fram
             const SceneNumber& number = numbers_[n];
             const double usual = is_length(number.pointer) ? size_ : 1;
             const double step = kParameterStep * std::max(std::fabs(number.value), usual);
-            const double after = number.value + step, before = number.value - step;
-            steps_[n] = {model_at(number, before), model_at(number, after), after - before};
+            const double above = number.value + step, below = number.value - step;
+            steps_[n].size = above - below;
+            fill(scene_at(number, below), scene_at(number, above), steps_[n]);
         }
     });
 }
@@ -121,52 +161,41 @@ ParameterDerivatives::~ParameterDerivatives() = default;
 
 std::vector<Vec2> ParameterDerivatives::of(const WorldImage& image, const ProjectedPoint& point) const {
     if (image.path == Path::kDirect) return of_direct(image.pixel, point);
-    return image.events.empty() ? std::vector<Vec2>() : of_chain(image, point);
+    const auto sensitivity = image_sensitivity(world_, frame_, {image.events, image.pixel}, point);
+    return sensitivity ? of(image, *sensitivity) : std::vector<Vec2>();
 }
 
 std::vector<Vec2> ParameterDerivatives::of_direct(const Vec2& pixel, const ProjectedPoint& point) const {
-    const auto shown = [&](const Model& model) -> std::optional<Vec2> {
-        if (!point.is_direction) return film_pixel(model.camera, point.place, pixel);
-        const std::optional<ChainEnd> eye = chain_eye(model.camera);
-        if (!eye || eye->is_direction) return std::nullopt;
-        return film_pixel(model.camera, eye->place + kFarInSizes * size_ * point.place, pixel);
-    };
     std::vector<Vec2> moved;
+    moved.reserve(steps_.size());
     for (const Step& step : steps_) {
-        const auto before = shown(*step.before), after = shown(*step.after);
-        if (!before || !after) return {};
-        moved.push_back((*after - *before) / step.size);
+        if (!step.cameras) {
+            moved.emplace_back(0);
+            continue;
+        }
+        Vec3 low = point.place, high = low;
+        if (point.is_direction) {
+            const auto below = chain_eye(step.cameras->below), above = chain_eye(step.cameras->above);
+            if (!below || !above || below->is_direction || above->is_direction) return {};
+            const Vec3 far = kFarInSizes * size_ * point.place;
+            low = below->place + far, high = above->place + far;
+        }
+        const std::optional<Vec2> change = step.cameras->change(low, high, pixel);
+        if (!change) return {};
+        moved.push_back(*change / step.size);
     }
     return moved;
 }
 
-std::vector<Vec2> ParameterDerivatives::of_chain(const WorldImage& image, const ProjectedPoint& point) const {
-    const std::span<const PathEvent> events = image.events;
-    Media around;
-    if (!camera_media_.none()) {
-        const std::optional<Ray> view = exact_ray(now_->camera, image.pixel);
-        if (!view) return {};
-        around = camera_media_.of(*view);
-    }
-    const auto media = event_media(world_, around, events);
-    const auto chain = media ? make_chain(now_->chain(), events, *media, point) : std::nullopt;
-    if (!chain) return {};
-    std::vector<SurfacePoint> points;
-    for (const PathEvent& event : events)
-        points.push_back(now_->pointers[event.optic]->eval(event.face, event.uv));
-    const std::optional<FilmPlace> film = film_place(now_->camera, points.front().position, image.pixel);
-    if (!film) return {};
-    const PathSensitivity sensitivity(*chain, points, film->slope);
-    if (!sensitivity.is_regular()) return {};
-
+std::vector<Vec2> ParameterDerivatives::of(const WorldImage& image,
+                                           const ImageSensitivity& sensitivity) const {
+    if (!sensitivity.path.is_regular()) return {};
     std::vector<Vec2> moved;
+    moved.reserve(steps_.size());
     for (const Step& step : steps_) {
-        const auto before = step.before->state(events, *media, point, points, image.pixel),
-                   after = step.after->state(events, *media, point, points, image.pixel);
-        if (!before || !after) return {};
-        PerEvent<Vec2> law = after->law;
-        for (std::size_t i = 0; i < events.size(); ++i) law[i] -= before->law[i];
-        moved.push_back(sensitivity.moved(after->pixel - before->pixel, law) / step.size);
+        const std::optional<Vec2> one = step.moved(image, sensitivity);
+        if (!one) return {};
+        moved.push_back(*one);
     }
     return moved;
 }

@@ -109,8 +109,26 @@ bool PointProjector::on_film(const Vec2& pixel) const {
            pixel.y <= world_.scene.film.height;
 }
 
-/// By the chain of the image's surfaces; where the camera has no eye, by the exact paths around the image.
+/// By the chain of the image's surfaces, once for the point and all parameters.
 void PointProjector::differentiate(WorldImage& image, const ProjectedPoint& point) const {
+    const bool is_direct = image.path == Path::kDirect;
+    const bool by_point = request_.derivatives && image.refined && !image.has_derivative && !is_direct;
+    if (is_direct && parameters_) image.by_parameter = parameters_->of(image, point);
+    if (is_direct || !(by_point || parameters_)) return;
+    const auto sensitivity = image_sensitivity(world_, frame_, {image.events, image.pixel}, point);
+    if (by_point) {
+        if (sensitivity && sensitivity->path.is_light()) {
+            image.has_derivative = sensitivity->path.is_regular();
+            image.derivative = sensitivity->path.by_point();
+        } else {
+            solve_derivative(image, point);
+        }
+    }
+    if (parameters_ && sensitivity) image.by_parameter = parameters_->of(image, *sensitivity);
+}
+
+/// By the chain solved anew; where the camera has no eye, by the exact paths around the image.
+void PointProjector::solve_derivative(WorldImage& image, const ProjectedPoint& point) const {
     if (const auto solved = solve_image(world_, frame_, {image.events, image.pixel}, point)) {
         if (!solved->is_regular || length(solved->film.pixel - image.pixel) > kSamePixels) return;
         image.has_derivative = true;
@@ -305,7 +323,6 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         image.inside = on_film(image.pixel);
         image.visible = request_.visibility && image.inside && is_between_planes(t) &&
                         sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from, on_facet);
-        if (request_.derivatives && image.refined) differentiate(image, {point});
         result.images.push_back(std::move(image));
     }
 }
@@ -335,8 +352,7 @@ void PointProjector::project(std::span<const ProjectedPoint> points, std::span<c
         for (const auto& several : several_) add_several(*several, point, found);
         if (asked.is_direction || point != asked.place) move_to(asked, found);
         if (request_.min_weight > 0 || request_.max_images > 0) keep_strongest(found);
-        if (parameters_)
-            for (WorldImage& image : found.images) image.by_parameter = parameters_->of(image, asked);
+        for (WorldImage& image : found.images) differentiate(image, asked);
     }
 }
 

@@ -42,6 +42,7 @@ class PointProjector {
     bool leads_towards(const Ray& view, const OpticPath& path, const Vec3& point) const;
     void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
     void differentiate(WorldImage& image, const ProjectedPoint& point) const;
+    void solve_derivative(WorldImage& image, const ProjectedPoint& point) const;
     Vec3 within_reach(const ProjectedPoint& point) const;
     void move_to(const ProjectedPoint& point, PointProjection& result) const;
     bool may_have_several() const;

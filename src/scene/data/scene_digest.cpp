@@ -272,6 +272,12 @@ std::string mesh_digest(const Mesh& mesh) {
     return digest.digits();
 }
 
+std::string camera_digest(const CameraDescription& camera) {
+    Digest digest;
+    add(camera, digest);
+    return digest.digits();
+}
+
 std::string scene_digest(const Scene& scene) {
     [[maybe_unused]] const auto& [file, folder, label, resolved, film, cameras, own_camera, background,
                                   materials, meshes, lights, volumes, points, labels, render, files,

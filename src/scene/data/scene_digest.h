@@ -13,5 +13,7 @@ std::string scene_digest(const Scene& scene);
 
 /// The same of all that one mesh holds.
 std::string mesh_digest(const Mesh& mesh);
+/// And of one camera.
+std::string camera_digest(const CameraDescription& camera);
 
 }  // namespace trilens

@@ -29,11 +29,11 @@ ChainShape shape_at(const PathChain& chain, std::span<const SurfaceParameter> at
 }
 
 /// The residual that rounding of coordinates leaves.
-double chain_floor(const PathChain& chain, const ChainBend& bend, const ChainShape& shape) {
+double chain_floor(const PathChain& chain, const ChainBend& bend, std::span<const SurfacePoint> points) {
     double coordinate = 0, shortest = std::numeric_limits<double>::infinity(), index = 1;
     for (const ChainEnd* end : {&chain.eye, &chain.point})
         if (!end->is_direction) coordinate = std::max(coordinate, length(end->place));
-    for (const SurfacePoint& point : shape.points) coordinate = std::max(coordinate, length(point.position));
+    for (const SurfacePoint& point : points) coordinate = std::max(coordinate, length(point.position));
     for (const double way : bend.length) shortest = std::min(shortest, way);
     for (const ChainEvent& event : chain.events)
         index = std::max({index, event.index_before, event.index_after});
@@ -172,27 +172,56 @@ PerEvent<Vec2> ChainHessian::solve(std::span<const Vec2> right) const {
 PathSensitivity::PathSensitivity(const PathChain& chain, std::span<const SurfacePoint> points,
                                  const std::array<Vec3, 2>& slope) {
     const ChainBend bend = chain_bend(chain, points);
+    is_light_ = chain_residual(bend, points) <= chain_floor(chain, bend, points);
     const ChainHessian hessian(chain, bend, points);
     is_regular_ = hessian.is_regular();
     if (!is_regular_) return;
-    const std::size_t last = points.size() - 1;
+    const std::size_t count = points.size();
+    by_surface_.resize(count);
+    by_index_.resize(count + 1);
     for (std::size_t axis = 0; axis < 2; ++axis) {
-        PerEvent<Vec2> right(points.size(), Vec2(0));
+        PerEvent<Vec2> right(count, Vec2(0));
         right[0] = {dot(slope[axis], points[0].du), dot(slope[axis], points[0].dv)};
-        lambda_[axis] = hessian.solve(right);
-        // F of the last event changes by -H_k dX along its tangents; at infinity the way itself turns by dX.
-        const Vec2& at_end = lambda_[axis][last];
-        by_point_[axis] =
-            turn_of_way(index_along(chain, last + 1) / (chain.point.is_direction ? 1 : bend.length[last + 1]),
-                        bend.way[last + 1], at_end.x * points[last].du + at_end.y * points[last].dv);
+        const PerEvent<Vec2> lambda = hessian.solve(right);
+        Few<Vec3, kFewEvents + 2> yields(count + 2, Vec3(0));
+        for (std::size_t i = 0; i < count; ++i) {
+            yields[i + 1] = lambda[i].x * points[i].du + lambda[i].y * points[i].dv;
+            by_surface_[i].du[axis] = -lambda[i].x * bend.bend[i];
+            by_surface_[i].dv[axis] = -lambda[i].y * bend.bend[i];
+        }
+        follow(axis, chain, bend, yields);
+        by_surface_[0].position[axis] += slope[axis];
     }
 }
 
-Vec2 PathSensitivity::moved(const Vec2& pixel_change, std::span<const Vec2> law_change) const {
-    Vec2 change = pixel_change;
-    for (std::size_t i = 0; i < law_change.size(); ++i)
-        change -= Vec2(dot(lambda_[0][i], law_change[i]), dot(lambda_[1][i], law_change[i]));
-    return change;
+/// lambda . dF is the sum over events of y_i . dg_i, where y_i = lambda_i . (du, dv) and no end yields. Of a
+/// stretch of index n both its events have a part: it is n de . (y_after - y_before), and
+/// de = (1 - e e^T) (dP_after - dP_before) / l. The image moves by as much the other way.
+void PathSensitivity::follow(std::size_t axis, const PathChain& chain, const ChainBend& bend,
+                             std::span<const Vec3> yields) {
+    const std::size_t last = by_surface_.size();
+    Vec3 before(0);
+    for (std::size_t s = 0; s <= last; ++s) {
+        const Vec3 gap = yields[s + 1] - yields[s];
+        const double index = index_along(chain, s);
+        by_index_[s][static_cast<int>(axis)] = -dot(bend.way[s], gap);
+        const Vec3 pull = turn_of_way(index / bend.length[s], bend.way[s], gap);
+        if (s > 0) by_surface_[s - 1].position[axis] = pull - before;
+        // At infinity it is the way itself that turns.
+        if (s == 0) by_eye_[axis] = chain.eye.is_direction ? -turn_of_way(index, bend.way[s], gap) : pull;
+        if (s == last)
+            by_point_[axis] = -(chain.point.is_direction ? turn_of_way(index, bend.way[s], gap) : pull);
+        before = pull;
+    }
+}
+
+Vec2 PathSensitivity::by_surface(std::size_t event, const SurfacePoint& before,
+                                 const SurfacePoint& after) const {
+    const BySurface& by = by_surface_[event];
+    const Vec3 position = after.position - before.position, du = after.du - before.du,
+               dv = after.dv - before.dv;
+    return {dot(by.position[0], position) + dot(by.du[0], du) + dot(by.dv[0], dv),
+            dot(by.position[1], position) + dot(by.du[1], du) + dot(by.dv[1], dv)};
 }
 
 namespace {
@@ -246,7 +275,7 @@ std::optional<ChainShape> solve_chain(const PathChain& chain, std::span<const Su
     ChainIterate now = iterate_at(chain, start);
     bool solved = false;
     for (int i = 0; i < kMostChainSteps && std::isfinite(now.residual); ++i) {
-        const bool was_solved = now.residual <= chain_floor(chain, now.bend, now.shape);
+        const bool was_solved = now.residual <= chain_floor(chain, now.bend, now.shape.points);
         const ChainHessian hessian(chain, now.bend, now.shape.points);
         if (!hessian.is_regular()) break;
         PerEvent<Vec2> law = chain_law(now.bend, now.shape.points);

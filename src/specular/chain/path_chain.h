@@ -97,24 +97,43 @@ class ChainHessian {
 
 /// How the image over a path of light moves: the implicit function theorem on the law F(u, theta) = 0, where
 /// u are the places on the surfaces and theta is what moves: du / dtheta = -A^-1 dF / dtheta. Only the first
-/// event's place moves the image, so two solutions with A, which is symmetric, serve everything that moves.
+/// event's place moves the image, so two solutions with A, which is symmetric, serve everything that moves
+/// (the adjoint method): they say how the image follows each part of the path while the others hold, and what
+/// moves several parts moves it by the sum.
 class PathSensitivity {
   public:
     /// `slope`: how the image's pixel moves with the first event's position, rows x and y.
     PathSensitivity(const PathChain& chain, std::span<const SurfacePoint> points,
                     const std::array<Vec3, 2>& slope);
 
-    /// False at a caustic, where the image moves infinitely fast; nothing else may be asked then.
+    /// Whether the law holds at the points, to rounding.
+    bool is_light() const { return is_light_; }
+    /// False at a caustic, where the image moves infinitely fast; nothing of what follows may be asked then.
     bool is_regular() const { return is_regular_; }
     /// Pixels per scene unit of the chain's point; of a direction per radian across it. Rows x and y.
     const std::array<Vec3, 2>& by_point() const { return by_point_; }
-    /// How the pixel moves with a number: of its change at fixed places, and that of the law there.
-    Vec2 moved(const Vec2& pixel_change, std::span<const Vec2> law_change) const;
+    /// Pixels as the eye moves, or the direction that it sees along turns; not what the film itself does
+    /// then.
+    Vec2 by_eye(const Vec3& change) const { return {dot(by_eye_[0], change), dot(by_eye_[1], change)}; }
+    /// Pixels as the surface of an event moves from `before` to `after`, both at the event's (u, v): their
+    /// positions, du and dv count.
+    Vec2 by_surface(std::size_t event, const SurfacePoint& before, const SurfacePoint& after) const;
+    /// Pixels as the index along a stretch changes; stretch 0 starts at the eye.
+    Vec2 by_index(std::size_t stretch, double change) const { return change * by_index_[stretch]; }
 
   private:
-    bool is_regular_ = false;
-    std::array<PerEvent<Vec2>, 2> lambda_;  // A^-1 of how x, and y, move with the places
-    std::array<Vec3, 2> by_point_{};
+    void follow(std::size_t axis, const PathChain& chain, const ChainBend& bend,
+                std::span<const Vec3> yields);
+
+    /// Of an event's position and tangents: rows x and y.
+    struct BySurface {
+        std::array<Vec3, 2> position, du, dv;
+    };
+
+    bool is_light_ = false, is_regular_ = false;
+    PerEvent<BySurface> by_surface_;
+    PerStretch<Vec2> by_index_;
+    std::array<Vec3, 2> by_eye_{}, by_point_{};
 };
 
 /// A step that leaves its face at `border` for a point of space; `from` sees that from where light comes.
