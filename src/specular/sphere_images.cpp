@@ -154,7 +154,8 @@ void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLane
 }
 
 /// For images in front alone way and point may come nearer: there Newton's method has to converge, and no
-/// more.
+/// more. A way that passes the sphere at d leaves an arc of about d / r on either side, r the distances of
+/// eye and point, so the nearer of them counts.
 constexpr double kFrontClearance = 2e-5;
 constexpr int kFrontSteps = 5;
 
@@ -181,8 +182,10 @@ void find_front_zeros_here(const SphereShape& sphere, const Vec3& eye, const Poi
     result.one = result.none = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
         const EyeAndPoint pair = pair_at(sphere, eye, points, first);
-        const auto [length, nearest] = way_of(pair);
-        const Number margin = hn::Mul(number(kFrontClearance), hn::Add(number(1), length));
+        const Number nearest = way_of(pair).nearest,
+                     distance = hn::Min(size_of(pair.eye), size_of(pair.point));
+        const Number margin =
+            hn::Mul(number(kFrontClearance), hn::Add(number(1), hn::Add(distance, distance)));
         result.one |= bits_of(hn::Gt(nearest, hn::Add(number(1), margin))) << first;
         result.none |= bits_of(hn::Lt(nearest, hn::Sub(number(1), margin))) << first;
         const Edges of_eye = edges_of(pair.eye, pair.point), of_point = edges_of(pair.point, pair.eye);

@@ -31,6 +31,11 @@ class Cubic final : public trilens::Surface {
         return p;
     }
 
+    void move(const trilens::Vec3& by, const trilens::Vec4& bend) {
+        middle_ += by;
+        bend_ += bend;
+    }
+
     /// Over the box around `uv`, by the largest of each derivative.
     trilens::SurfaceBounds bounds(const trilens::Vec2& uv, const trilens::Vec2& half) const {
         const trilens::Vec2 most = glm::abs(uv - 0.5) + half;

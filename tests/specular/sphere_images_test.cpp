@@ -84,7 +84,7 @@ TEST_CASE("the zeros that are said of a sphere are those of Alhazen's problem", 
 TEST_CASE("what an eye outside sees in a sphere's front is what Alhazen's problem has there",
           "[specular][oracle]") {
     Draw draw(88);
-    int one = 0, none = 0, silent = 0, wrong = 0, elsewhere = 0;
+    int one = 0, none = 0, silent = 0, wrong = 0, elsewhere = 0, far = 0;
     for (int round = 0; round < 400; ++round) {
         const CubeSphere sphere(draw.in_cube(1), draw.log_uniform(0.3, 3));
         const auto somewhere = [&](double nearest, double furthest) {
@@ -92,7 +92,8 @@ TEST_CASE("what an eye outside sees in a sphere's front is what Alhazen's proble
             return sphere.center + sphere.radius * draw.log_uniform(nearest, furthest) * direction;
         };
         const Vec3 eye = somewhere(1.01, 20);
-        // Half of the points lie where the way passes close by the sphere's edge.
+        // Half of the points lie where the way passes close by the sphere's edge; in every other round
+        // half of either lie up to as far away as points at infinity do.
         const Vec3 out = normalize(eye - sphere.center);
         PointLanes points;
         for (std::size_t i = 0; i < kPointLanes; ++i) {
@@ -100,8 +101,11 @@ TEST_CASE("what an eye outside sees in a sphere's front is what Alhazen's proble
             const double distance = length(eye - sphere.center) / sphere.radius;
             const double sine = (1 + draw.uniform(-0.02, 0.02)) / distance;
             const Vec3 along = sine * aside - std::sqrt(std::max(0.0, 1 - sine * sine)) * out;
-            points.set(i, i % 2 == 0 ? somewhere(0.3, 20)
-                                     : eye + sphere.radius * distance * draw.uniform(0.5, 3) * along);
+            const bool is_far = round % 2 == 0 && i % 4 > 1;
+            points.set(i, i % 2 == 0
+                              ? (is_far ? somewhere(20, 1e6) : somewhere(0.3, 20))
+                              : eye + sphere.radius * distance *
+                                          (is_far ? draw.log_uniform(3, 1e5) : draw.uniform(0.5, 3)) * along);
         }
         FrontZeros zeros;
         find_front_zeros({sphere.center, sphere.radius}, eye, points, zeros);
@@ -112,6 +116,7 @@ TEST_CASE("what an eye outside sees in a sphere's front is what Alhazen's proble
             none += is_none;
             silent += !is_one && !is_none;
             if (!is_one && !is_none) continue;
+            far += length(points.at(i) - sphere.center) > 1e3 * sphere.radius;
             std::vector<Vec3> front = alhazen(sphere, eye, points.at(i));
             std::erase_if(front, [&](const Vec3& root) {
                 const Vec3 normal = root - sphere.center;
@@ -122,8 +127,9 @@ TEST_CASE("what an eye outside sees in a sphere's front is what Alhazen's proble
                                                 1e-6 * sphere.radius);
         }
     }
-    CAPTURE(one, none, silent, elsewhere);
+    CAPTURE(one, none, silent, elsewhere, far);
     CHECK(wrong == 0);
+    CHECK(far > 800);
     CHECK(elsewhere <= one / 200);
     CHECK(one > 2000);
     CHECK(none > 1000);

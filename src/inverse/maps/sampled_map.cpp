@@ -26,6 +26,30 @@ CubicValue cubic_hermite(const Vec2& p0, const Vec2& m0, const Vec2& p1, const V
             6 * t * s * (p1 - p0) + s * (1 - 3 * t) * m0 + t * (3 * t - 2) * m1};
 }
 
+/// Coefficients of 1, t, t^2, t^3.
+using Cubic = std::array<Vec2, 4>;
+
+/// The same cubic whole.
+Cubic hermite_cubic(const Vec2& p0, const Vec2& m0, const Vec2& p1, const Vec2& m1) {
+    return {p0, m0, 3.0 * (p1 - p0) - 2.0 * m0 - m1, 2.0 * (p0 - p1) + m0 + m1};
+}
+
+/// A patch along u, which is cubic.
+struct PatchRow {
+    Cubic position, by_v;  // and its derivative by v
+    Vec3 weight{1}, weight_by_u{0};
+    Vec2 size{1};  // of the patch, pixels
+    std::uint64_t history = 0;
+
+    /// u in 0..1.
+    MapImage at(double u) const {
+        const auto value = [&](const Cubic& c) { return c[0] + u * (c[1] + u * (c[2] + u * c[3])); };
+        const Vec2 by_u = position[1] + u * (2.0 * position[2] + 3 * u * position[3]);
+        return {value(position), Mat2(by_u / size.x, value(by_v) / size.y), weight + u * weight_by_u,
+                history};
+    }
+};
+
 /// Which image of `there` continues each of `here`, `step` away: the one whose tangent meets its own half way
 /// best. None unless that pairs them off one to one.
 bool pair_off(const MapImages& here, const MapImages& there, const Vec2& step, std::vector<Id>& paired) {
@@ -71,29 +95,35 @@ struct SampledMap::Patch {
 
     std::size_t count() const { return corner[0]->size(); }
 
-    /// Coons' patch of the four cubic edges, at (u, v) in 0..1, with its derivatives and the weight.
-    MapImage at(std::size_t i, double u, double v) const {
+    /// Coons' patch of the four cubic edges where v is held, of image i.
+    PatchRow row(std::size_t i, double v) const {
         std::array<const MapImage*, 4> c;
         for (std::size_t k = 0; k < 4; ++k) c[k] = &(*corner[k])[pairs[k][i]];
-        const auto edge = [&](std::size_t a, std::size_t b, int axis, double t) {
-            return cubic_hermite(c[a]->position, size[axis] * c[a]->jacobian[axis], c[b]->position,
-                                 size[axis] * c[b]->jacobian[axis], t);
+        const auto side = [&](std::size_t a, std::size_t b) {
+            return cubic_hermite(c[a]->position, size.y * c[a]->jacobian[1], c[b]->position,
+                                 size.y * c[b]->jacobian[1], v);
         };
-        const CubicValue top = edge(0, 1, 0, u), bottom = edge(2, 3, 0, u);
-        const CubicValue left = edge(0, 2, 1, v), right = edge(1, 3, 1, v);
+        const auto edge = [&](std::size_t a, std::size_t b) {
+            return hermite_cubic(c[a]->position, size.x * c[a]->jacobian[0], c[b]->position,
+                                 size.x * c[b]->jacobian[0]);
+        };
+        const Cubic top = edge(0, 1), bottom = edge(2, 3);
+        const CubicValue left = side(0, 2), right = side(1, 3);
         const Vec2 &p00 = c[0]->position, &p10 = c[1]->position, &p01 = c[2]->position, &p11 = c[3]->position;
-        MapImage image = *c[0];
-        image.position = (1 - v) * top.value + v * bottom.value + (1 - u) * left.value + u * right.value -
-                         (1 - v) * ((1 - u) * p00 + u * p10) - v * ((1 - u) * p01 + u * p11);
-        image.jacobian[0] = ((1 - v) * top.slope + v * bottom.slope + right.value - left.value -
-                             (1 - v) * (p10 - p00) - v * (p11 - p01)) /
-                            size.x;
-        image.jacobian[1] = (bottom.value - top.value + (1 - u) * left.slope + u * right.slope -
-                             (1 - u) * (p01 - p00) - u * (p11 - p10)) /
-                            size.y;
-        image.weight = (1 - v) * ((1 - u) * c[0]->weight + u * c[1]->weight) +
-                       v * ((1 - u) * c[2]->weight + u * c[3]->weight);
-        return image;
+        PatchRow row;
+        row.size = size;
+        for (std::size_t k = 0; k < 4; ++k) {
+            row.position[k] = (1 - v) * top[k] + v * bottom[k];
+            row.by_v[k] = bottom[k] - top[k];
+        }
+        row.position[0] += left.value - (1 - v) * p00 - v * p01;
+        row.position[1] += right.value - left.value - (1 - v) * (p10 - p00) - v * (p11 - p01);
+        row.by_v[0] += left.slope + p00 - p01;
+        row.by_v[1] += right.slope - left.slope + p10 - p00 + p01 - p11;
+        row.weight = (1 - v) * c[0]->weight + v * c[2]->weight;
+        row.weight_by_u = (1 - v) * c[1]->weight + v * c[3]->weight - row.weight;
+        row.history = c[0]->history;
+        return row;
     }
 };
 
@@ -174,7 +204,7 @@ double SampledMap::error_at_middle(const Cell& cell) const {
     double worst = 0;
     for (std::size_t i = 0; i < patch->count(); ++i) {
         const MapImage predicted =
-            patch->at(i, (mx - cell.x0) / patch->size.x, (my - cell.y0) / patch->size.y);
+            patch->row(i, (my - cell.y0) / patch->size.y).at((mx - cell.x0) / patch->size.x);
         double nearest = kNot;
         for (const MapImage& exact : middle)
             if (exact.history == predicted.history)
@@ -187,6 +217,7 @@ double SampledMap::error_at_middle(const Cell& cell) const {
 void SampledMap::for_each_pixel(
     const std::function<void(int x, int y, std::span<const MapImage> images)>& use) const {
     parallel_for(settled_.size(), 64, [&](std::size_t first, std::size_t last) {
+        std::vector<PatchRow> rows;
         std::vector<MapImage> images;
         for (std::size_t i = first; i < last; ++i) {
             const Cell& cell = settled_[i];
@@ -194,19 +225,22 @@ void SampledMap::for_each_pixel(
             const int end_x = cell.x1 == lattice_.width - 1 ? cell.x1 + 1 : cell.x1;
             const int end_y = cell.y1 == lattice_.height - 1 ? cell.y1 + 1 : cell.y1;
             const std::optional<Patch> patch = is_exact(cell) ? std::nullopt : Patch::of(*this, cell);
-            for (int y = cell.y0; y < end_y; ++y)
+            for (int y = cell.y0; y < end_y; ++y) {
+                const bool at_y0 = y == cell.y0, has_corners = at_y0 || y == cell.y1;
+                rows.clear();
+                for (std::size_t k = 0; patch && k < patch->count(); ++k)
+                    rows.push_back(patch->row(k, (y - cell.y0) / patch->size.y));
                 for (int x = cell.x0; x < end_x; ++x) {
-                    const bool at_x0 = x == cell.x0, at_x1 = x == cell.x1, at_y0 = y == cell.y0;
-                    if (!patch || ((at_x0 || at_x1) && (at_y0 || y == cell.y1))) {
+                    const bool at_x0 = x == cell.x0;
+                    if (!patch || (has_corners && (at_x0 || x == cell.x1))) {
                         use(x, y, images_[cell.sample[(at_x0 ? 0u : 1u) + (at_y0 ? 0u : 2u)]]);
                         continue;
                     }
                     images.clear();
-                    for (std::size_t k = 0; k < patch->count(); ++k)
-                        images.push_back(
-                            patch->at(k, (x - cell.x0) / patch->size.x, (y - cell.y0) / patch->size.y));
+                    for (const PatchRow& row : rows) images.push_back(row.at((x - cell.x0) / patch->size.x));
                     use(x, y, images);
                 }
+            }
         }
     });
 }

@@ -101,8 +101,11 @@ inline Resolution singular_values(const Mat2& a) {
 /// Of one image or more, the one whose derivative has the largest smaller singular value.
 inline const MapImage& best_resolved(std::span<const MapImage> images) {
     const MapImage* best = &images[0];
-    for (const MapImage& image : images)
-        if (singular_values(image.jacobian).least > singular_values(best->jacobian).least) best = &image;
+    if (images.size() == 1) return *best;
+    double most = singular_values(best->jacobian).least;
+    for (const MapImage& image : images.subspan(1))
+        if (const double least = singular_values(image.jacobian).least; least > most)
+            best = &image, most = least;
     return *best;
 }
 
