@@ -34,6 +34,6 @@ for seeds in fuzz/seeds/*; do
     target=${seeds##*/}
     cp "$build/fuzz/trilens_fuzz" "$OUT/${target}_fuzzer"
     (cd "$seeds" && /usr/bin/python3 -m zipfile -c "$OUT/${target}_fuzzer_seed_corpus.zip" *)
-    ! is_json "$target" || cp "$words" "$OUT/${target}_fuzzer.dict"
+    if is_json "$target"; then cp "$words" "$OUT/${target}_fuzzer.dict"; fi
     printf '[libfuzzer]\nmax_len = %s\n' "$(longest_of "$target")" >"$OUT/${target}_fuzzer.options"
 done
