@@ -49,7 +49,7 @@ PatchSide side_of_patch(const World& world, const DirectLight& direct, const Rad
 
 DirectLight::DirectLight(const World& world, const Progress& progress)
     : world_(world), white_(world.shading), cancel_(progress.cancel) {
-    prepare_shadows(world, progress);
+    prepare_shadows(world, false, progress);
     for (Material& material : white_.materials) {
         material = Material{};
         material.brdf = Brdf::kLambert;

@@ -60,7 +60,7 @@ TEST_CASE("beams are made and gathered with a progress that grows and tells of a
           "[caustics][progress]") {
     const auto world = lit_world(kBall, kPanel);
     Told making, gathering;
-    const CausticLights& lights = caustic_lights(*world, making.progress());
+    const CausticLights& lights = caustic_lights(*world, false, making.progress());
     const ReceiverSide floor = lights.faces->side_of(0, Vec3(0, 1, 0));
     gather_light(lights.all(), {&floor, 1}, gathering.progress());
     CHECK(making.stages == std::vector<std::string>{"beams of light 0, 2 samples"});
@@ -79,15 +79,15 @@ TEST_CASE("beams are made and gathered with a progress that grows and tells of a
 TEST_CASE("beams that are stopped in their midst are as if they had never been begun",
           "[caustics][progress]") {
     const auto world = lit_world(kBall, kPanel), other = lit_world(kBall, kPanel);
-    const std::vector<Vec3> expected = light_on_floor(caustic_lights(*other));
+    const std::vector<Vec3> expected = light_on_floor(caustic_lights(*other, false));
     for (const double share : {0.0, 0.1, 0.6}) {
         Told told;
         told.stop_at = share;
-        CHECK_THROWS_AS(caustic_lights(*world, told.progress()), Interrupted);
+        CHECK_THROWS_AS(caustic_lights(*world, false, told.progress()), Interrupted);
         CHECK(told.shares.back() < share + 0.1);
-        CHECK(known_caustic_lights(*world) == nullptr);
+        CHECK(known_caustic_lights(*world, false) == nullptr);
     }
-    const CausticLights& lights = caustic_lights(*world);
+    const CausticLights& lights = caustic_lights(*world, false);
     const ReceiverSide floor = lights.faces->side_of(0, Vec3(0, 1, 0));
     for (const double share : {0.0, 0.6}) {
         Told told;

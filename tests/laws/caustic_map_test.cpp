@@ -72,6 +72,38 @@ TEST_CASE("with the tolerance a map comes nearer to the truth, also where histor
     CHECK(fine < usual / 3);
 }
 
+TEST_CASE("traced pictures have borders of histories nearer to their places than others",
+          "[laws][law][caustics]") {
+    LitWorld ring(lit_world(R"({"name": "ring", "role": "optic", "material": "mirror", "resolution": 8,
+        "primitive": {"type": "cylinder", "center": [0, 0.4, 0], "axis": [0, 1, 0], "radius": 2, "height": 0.8}})",
+                            R"({"type": "directional", "direction": [-0.85, -0.6, -0.35], "intensity": 2,
+        "caustics": true})"),
+                  BeamGridParams::truth(1e-3 / 8));
+    constexpr int kSide = 24;
+    const double step = 4.0 / kSide;
+    const auto light = [&](const std::vector<std::unique_ptr<BeamLight>>& beams) {
+        std::vector<double> found;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            Receiver there = on_floor(step * (i % kSide + 0.5) - 2, step * (i / kSide + 0.5) - 2);
+            there.sides = {Vec3(step, 0, 0), Vec3(0, 0, step)};
+            there.exact = true;
+            found.push_back(irradiance(beams, there).y);
+        }
+        return found;
+    };
+    const std::vector<double> truth = light(ring.lights);
+    const auto error = [&](bool exact) {
+        const std::vector<double> found = light(caustic_lights(*ring.world, exact).by_light[0]);
+        double square = 0;
+        for (std::size_t i = 0; i < found.size(); ++i) square += std::pow(found[i] - truth[i], 2);
+        return std::sqrt(square / static_cast<double>(found.size()));
+    };
+    const double usual = error(false), exact = error(true);
+    CAPTURE(usual, exact);
+    CHECK(exact < usual / 3);
+    CHECK(exact < 1e-3);
+}
+
 TEST_CASE("a map that no optic brings light to says so", "[laws][caustics]") {
     const auto world = lit_world(R"({"name": "thing", "role": "object", "material": "white",
         "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.5}})",

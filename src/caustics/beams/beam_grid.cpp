@@ -27,6 +27,8 @@ constexpr double kLetBe = 0.05;
 constexpr std::size_t kReserve = 4;
 /// Of the usual number of triangles at most, however small the tolerance.
 constexpr double kMostTimes = 4;
+/// Of a tolerance, for the truth.
+constexpr double kFinerTruth = 16;
 
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
@@ -294,6 +296,10 @@ BeamGridParams BeamGridParams::within(double tolerance) {
         static_cast<std::size_t>(std::min(times, kMostTimes) * static_cast<double>(params.most_triangles));
     params.tolerance = tolerance;
     return params;
+}
+
+BeamGridParams BeamGridParams::truth(double tolerance) {
+    return within(tolerance / kFinerTruth);
 }
 
 void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {

@@ -28,6 +28,9 @@ struct BeamGridParams {
 
     /// For another tolerance: with levels and triangles as a smaller one needs them.
     static BeamGridParams within(double tolerance);
+    /// For receivers that ask for exact rays: borders of histories lie, there too, where the first beams have
+    /// them, so that they are for a sixteenth of the tolerance.
+    static BeamGridParams truth(double tolerance);
 };
 
 /// Triangles over one window; the bases of two triangles that share one are equal, so no corner lies on

@@ -14,9 +14,6 @@ namespace {
 /// Of the job: while beams are made, and gathered where the object is flat.
 constexpr double kBeamsShare = 0.3, kGatheringShare = 0.3;
 
-/// Borders of histories lie in the truth, too, where the first beams have them.
-constexpr double kFinerTruth = 16;
-
 /// The light of a pixel, and its area; none where the object is not.
 struct CausticPixel {
     bool covered = false;
@@ -64,7 +61,7 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
     const Target target(request.target, world.scene);
     const PathWorld optics = optics_for_lights(world);
     const BeamGridParams params =
-        BeamGridParams::within(request.exact ? request.tolerance / kFinerTruth : request.tolerance);
+        request.exact ? BeamGridParams::truth(request.tolerance) : BeamGridParams::within(request.tolerance);
     const std::vector<std::unique_ptr<BeamLight>> lights =
         make_beam_lights(world, optics, request.light, params, progress.part(0, kBeamsShare));
     if (target.rectangle()) {

@@ -30,8 +30,9 @@ std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame
                                     const ViewerCallbacks& callbacks) {
     const Warn& warn = callbacks.warn;
     check_engine(frame, engine.engine);
-    prepare_shadows(world);
-    if (has_caustics(world)) warn_of_lost_light(world, caustic_lights(world), warn);
+    const bool exact = engine.engine == Engine::kLimitTruth;
+    prepare_shadows(world, exact);
+    if (has_caustics(world)) warn_of_lost_light(world, caustic_lights(world, exact), warn);
     if (engine.engine == Engine::kLimitTruth) {
         CameraRays camera = make_camera_rays(world.scene, frame.camera);
         warn_of_unsure_media(world, camera_media_of(world, camera), warn);

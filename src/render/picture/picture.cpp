@@ -255,9 +255,9 @@ Progress prepare_many_optics(const World& world, const PictureRequest& request, 
 }
 
 /// Makes the beams of lights with caustics; returns the rest of the progress.
-Progress prepare_caustics(const World& world, const Progress& progress) {
-    if (!has_caustics(world) || known_caustic_lights(world)) return progress;
-    caustic_lights(world, progress.part(0, kBeamsShare));
+Progress prepare_caustics(const World& world, bool exact, const Progress& progress) {
+    if (!has_caustics(world) || known_caustic_lights(world, exact)) return progress;
+    caustic_lights(world, exact, progress.part(0, kBeamsShare));
     progress.begin_stage("");
     return progress.part(kBeamsShare, 1 - kBeamsShare);
 }
@@ -267,7 +267,7 @@ Progress prepare_caustics(const World& world, const Progress& progress) {
 Progress gather_seen(const World& world, Viewer& viewer, const LayerRequest& window,
                      const Progress& progress) {
     if (!has_caustics(world) || !viewer.has_facets()) return progress;
-    const CausticLights& lights = caustic_lights(world);
+    const CausticLights& lights = caustic_lights(world, false);
     std::vector<ReceiverSide> faces = seen_faces(*lights.faces, viewer, window, progress);
     const std::vector<const BeamLight*> all = lights.all();
     std::erase_if(faces, [&](const ReceiverSide& face) {
@@ -289,7 +289,9 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;
-    const Progress after_beams = prepare_caustics(world, prepare_many_optics(world, request, progress));
+    const bool exact = request.engine.engine == Engine::kLimitTruth;
+    const Progress after_beams =
+        prepare_caustics(world, exact, prepare_many_optics(world, request, progress));
     const std::unique_ptr<Viewer> viewer =
         make_viewer(world, request.frame, request.engine, ViewerCallbacks{warn, progress.cancel});
     const Progress after_gathering = gather_seen(world, *viewer, layers, after_beams);

@@ -195,7 +195,8 @@ Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Rec
     return sum;
 }
 
-std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Progress& progress) {
+std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const BeamGridParams& params,
+                                                   const Progress& progress) {
     auto lights = std::make_unique<CausticLights>();
     lights->optics = optics_for_lights(world);
     lights->faces = std::make_shared<ReceiverFaces>(world.objects);
@@ -209,7 +210,7 @@ std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Pro
         auto& of_light = lights->by_light.emplace_back();
         if (!has_followed_light(all[l])) continue;
         const double share = static_cast<double>(samples[l]) / count;
-        of_light = make_beam_lights(world, lights->optics, l, {}, progress.part(done, share));
+        of_light = make_beam_lights(world, lights->optics, l, params, progress.part(done, share));
         for (const auto& light : of_light) light->receive_on(lights->faces);
         done += share;
     }

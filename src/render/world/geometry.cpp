@@ -1,6 +1,7 @@
 #include "render/world/world.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 
@@ -98,20 +99,6 @@ struct ObjectGeometry {
     Lazy<Tracer> tracer;
 };
 
-/// What is kept of the lights whose light is followed.
-struct CausticGeometry {
-    Lazy<CausticLights> lights;
-    CausticLights* made = nullptr;
-    std::string of;  // the scene's lights and what they meet, when they were made
-};
-
-struct WorldGeometry {
-    std::shared_ptr<ObjectGeometry> objects = std::make_shared<ObjectGeometry>();
-    Lazy<PathWorld> paths;
-    std::shared_ptr<CausticGeometry> caustics = std::make_shared<CausticGeometry>();
-    std::vector<std::shared_ptr<OpticGeometry>> optic;
-};
-
 namespace {
 
 /// A digest of all but meshes that beams are made of.
@@ -125,6 +112,24 @@ std::string light_digest(const Scene& scene) {
 }
 
 }  // namespace
+
+/// What is kept of the lights whose light is followed.
+struct CausticGeometry {
+    Lazy<CausticLights> lights;
+    CausticLights* made = nullptr;
+    std::string of;  // the scene's lights and what they meet, when they were made
+
+    bool is_of(const Scene& scene) const { return made && of == light_digest(scene); }
+};
+
+struct WorldGeometry {
+    std::shared_ptr<ObjectGeometry> objects = std::make_shared<ObjectGeometry>();
+    Lazy<PathWorld> paths;
+    // Of pictures, and of receivers that ask for exact rays.
+    std::array<std::shared_ptr<CausticGeometry>, 2> caustics{std::make_shared<CausticGeometry>(),
+                                                             std::make_shared<CausticGeometry>()};
+    std::vector<std::shared_ptr<OpticGeometry>> optic;
+};
 
 World::World() = default;
 World::~World() = default;
@@ -141,12 +146,15 @@ void keep_geometry(World& world, const std::vector<Id>& kept_optics, bool keeps_
                                                   : world.geometry->optic[before]);
     bool keeps_optics = world.geometry && kept_optics.size() == world.geometry->optic.size();
     for (std::size_t i = 0; i < kept_optics.size(); ++i) keeps_optics = keeps_optics && kept_optics[i] == i;
-    const bool keeps_lights = keeps_objects && keeps_optics && world.geometry->caustics->made &&
-                              world.geometry->caustics->of == light_digest(world.scene);
-    if (keeps_lights) geometry->caustics = world.geometry->caustics;
+    std::vector<CausticGeometry*> kept_lights;
+    for (std::size_t k = 0; keeps_objects && keeps_optics && k < geometry->caustics.size(); ++k) {
+        if (!world.geometry->caustics[k]->is_of(world.scene)) continue;
+        geometry->caustics[k] = world.geometry->caustics[k];
+        kept_lights.push_back(geometry->caustics[k].get());
+    }
     world.geometry = std::move(geometry);
     // Beams point to these optics, which point into the scene.
-    if (keeps_lights) world.geometry->caustics->made->optics = optics_for_lights(world);
+    for (CausticGeometry* kept : kept_lights) kept->made->optics = optics_for_lights(world);
 }
 
 TriangleScene OpticFacets::scene() const {
@@ -231,26 +239,28 @@ Segments::Bits meets_anything(const World& world, const Segments& segments) {
     return hidden;
 }
 
-const CausticLights& caustic_lights(const World& world, const Progress& progress) {
-    CausticGeometry& kept = *world.geometry->caustics;
+const CausticLights& caustic_lights(const World& world, bool exact, const Progress& progress) {
+    CausticGeometry& kept = *world.geometry->caustics[exact];
     return kept.lights.get([&] {
-        std::unique_ptr<CausticLights> made = make_caustic_lights(world, progress);
+        const BeamGridParams params =
+            exact ? BeamGridParams::truth(BeamGridParams().tolerance) : BeamGridParams();
+        std::unique_ptr<CausticLights> made = make_caustic_lights(world, params, progress);
         kept.made = made.get();
         kept.of = light_digest(world.scene);
         return made;
     });
 }
 
-const CausticLights* known_caustic_lights(const World& world) {
-    return world.geometry->caustics->lights.find();
+const CausticLights* known_caustic_lights(const World& world, bool exact) {
+    return world.geometry->caustics[exact]->lights.find();
 }
 
-void prepare_shadows(const World& world, const Progress& progress) {
+void prepare_shadows(const World& world, bool exact, const Progress& progress) {
     if (!has_shadows(world)) return;
     object_tracer(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
         if (world.optics[i].mirror) limit_tracer(world, i);
-    if (has_caustics(world)) caustic_lights(world, progress);
+    if (has_caustics(world)) caustic_lights(world, exact, progress);
 }
 
 void prepare_optics(const World& world, const OpticNeeds& needs, const Progress& progress) {

@@ -261,7 +261,7 @@ void set_up_shading(World& world) {
         };
     if (has_caustics(world))
         world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {
-            return irradiance(caustic_lights(*self).by_light[light], receiver);
+            return irradiance(caustic_lights(*self, receiver.exact).by_light[light], receiver);
         };
     if (world.blended) world.blended->set_up(world.shading);
 }

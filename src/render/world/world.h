@@ -136,16 +136,17 @@ Segments::Bits casts_shadow(const World& world, const Segments& segments);
 /// not come straight.
 Segments::Bits meets_anything(const World& world, const Segments& segments);
 
-/// The beams of lights with caustics, made when first asked for. Throws Interrupted soon after `progress`
-/// says so, and then the next one to ask makes them.
-const CausticLights& caustic_lights(const World& world, const Progress& progress = {});
+/// The beams of lights with caustics, made when first asked for; `exact`: for receivers that ask for exact
+/// rays, which have beams of their own. Throws Interrupted soon after `progress` says so, and then the next
+/// one to ask makes them.
+const CausticLights& caustic_lights(const World& world, bool exact, const Progress& progress = {});
 
 /// They, where they are made already; null: they are not.
-const CausticLights* known_caustic_lights(const World& world);
+const CausticLights* known_caustic_lights(const World& world, bool exact);
 
 /// Builds what casts_shadow asks, and beams of light, where the scene has shadows: before many threads do.
 /// Throws as caustic_lights does.
-void prepare_shadows(const World& world, const Progress& progress = {});
+void prepare_shadows(const World& world, bool exact, const Progress& progress = {});
 
 /// The optic's facets at resolution n. The last resolution of each optic is kept, so that a new camera finds
 /// it.
@@ -198,7 +199,8 @@ Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Rec
 PathWorld optics_for_lights(const World& world);
 
 /// Beams of all lights that are followed. Throws Interrupted soon after `progress` says so.
-std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Progress& progress = {});
+std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const BeamGridParams& params,
+                                                   const Progress& progress = {});
 
 /// Gathers now, as a stage of its own, what lights send to these faces, that else is gathered when a receiver
 /// first asks for it. Throws Interrupted soon after `progress` says so.
