@@ -201,17 +201,17 @@ Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
-Hit Tracer::first_hit(const Ray& ray, double t_min) const {
+Hit Tracer::first_hit(const Ray& ray, double t_min, double t_max) const {
     // The smallest t, and whether any other hit came as near as a tie on the way there.
     Id seen = kNone;
     TriangleHit first{kInfinity, {}};
     bool tie = false;
-    data_->for_each_hit(ray, t_min, kInfinity, [&](Id triangle, const TriangleHit& hit) {
+    data_->for_each_hit(ray, t_min, tie_end(t_max), [&](Id triangle, const TriangleHit& hit) {
         tie = tie || (seen != kNone && tie_end(std::min(hit.t, first.t)) >= std::max(hit.t, first.t));
         if (hit.t < first.t) first = hit, seen = triangle;
         return tie_end(first.t);
     });
-    if (seen == kNone) return {};
+    if (seen == kNone || first.t > t_max) return {};
 
     // Among all within the tie of the smallest, the one that comes first in the scene: no order of visits
     // shows.

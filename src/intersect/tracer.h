@@ -106,10 +106,11 @@ class Tracer {
     Tracer(Tracer&&) noexcept;
     Tracer& operator=(Tracer&&) noexcept;
 
-    /// The first hit with t >= t_min (in units of the direction, which need not be unit). Among the hits
-    /// within kDepthTie of the smallest t, the one with the smallest (object, primitive). A ray that is not
-    /// finite, or has no direction, sees nothing.
-    Hit first_hit(const Ray& ray, double t_min = 0) const;
+    /// The first hit with t_min <= t <= t_max (in units of the direction, which need not be unit). Among the
+    /// hits within kDepthTie of the smallest t, of which some may lie beyond t_max, the one with the smallest
+    /// (object, primitive). A ray that is not finite, or has no direction, sees nothing.
+    Hit first_hit(const Ray& ray, double t_min = 0,
+                  double t_max = std::numeric_limits<double>::infinity()) const;
 
     /// Whether anything lies on the ray with t_min < t < t_max.
     bool occluded(const Ray& ray, double t_min, double t_max) const;

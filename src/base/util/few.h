@@ -54,6 +54,8 @@ class Few {
     const T& back() const { return data()[size_ - 1]; }
 
     void clear() { size_ = 0; }
+    /// Of those that are not empty.
+    void pop_back() { --size_; }
     void push_back(const T& value) {
         const T kept = value;  // it may lie in here
         make_room(size_ + 1);

@@ -116,8 +116,11 @@ std::optional<Beam> Beam::around(const PartSamples<Ray>& rays) {
             return dot(lateral, local) - slope(ray) * dot(z, local);
         };
         const Hull at = hull_with_room(each(rays, place)), moves = hull_with_room(each(rays, slope));
-        beam.count_ = at.count;
-        for (std::size_t i = 0; i < at.count; ++i) beam.ray_[d][i] = {at.value[i], moves.value[i]};
+        for (std::size_t i = 0; i < kMostRays; ++i) {
+            const std::size_t ray = std::min(i, at.count - 1);
+            beam.ray_at_[d][i] = at.value[ray];
+            beam.ray_moves_[d][i] = moves.value[ray];
+        }
         beam.room_[d] = {at.room + kSlack * (coordinate + beam.width_), moves.room + kSlack};
     }
     return beam;
@@ -125,24 +128,31 @@ std::optional<Beam> Beam::around(const PartSamples<Ray>& rays) {
 
 /// The beam's extent in a direction over a stretch of the axis: linear in z, ray by ray.
 Interval Beam::across(std::size_t direction, const Interval& along) const {
+    const std::array<double, kMostRays>&at = ray_at_[direction], &moves = ray_moves_[direction];
+    std::array<double, kMostRays> low, high;
+    for (std::size_t i = 0; i < kMostRays; ++i) {
+        const double near = at[i] + along.low * moves[i], far = at[i] + along.high * moves[i];
+        low[i] = std::min(near, far);
+        high[i] = std::max(near, far);
+    }
     Interval result{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < count_; ++i) {
-        const Vec2& ray = ray_[direction][i];
-        const double near = ray.x + along.low * ray.y, far = ray.x + along.high * ray.y;
-        result.low = std::min({result.low, near, far});
-        result.high = std::max({result.high, near, far});
+    for (std::size_t i = 0; i < kMostRays; ++i) {
+        result.low = std::min(result.low, low[i]);
+        result.high = std::max(result.high, high[i]);
     }
     const double room =
         room_[direction].x + std::max(std::fabs(along.low), std::fabs(along.high)) * room_[direction].y;
     return {result.low - room, result.high + room};
 }
 
-bool Beam::overlaps(const std::array<Interval, kDirections>& lateral, const Interval& along,
-                    double far) const {
+/// `extent`: of something in a direction.
+template <typename Extent>
+bool Beam::overlaps(const Extent& extent, double far) const {
+    const Interval along = extent(axis_[2]);
     const Interval inside{std::max(along.low, start_), std::min(along.high, far)};
     if (!(inside.low <= inside.high)) return false;
     for (std::size_t d = 0; d < kDirections; ++d)
-        if (!lateral[d].meets(across(d, inside))) return false;
+        if (!extent(lateral_[d]).meets(across(d, inside))) return false;
     return true;
 }
 
@@ -152,11 +162,7 @@ bool Beam::may_touch(const Box& box, double far) const {
         const double at = dot(direction, middle), reach = dot(glm::abs(direction), half);
         return Interval{at - reach, at + reach};
     };
-    const Interval along = extent(axis_[2]);
-    if (along.high < start_ || along.low > far) return false;
-    std::array<Interval, kDirections> lateral;
-    for (std::size_t d = 0; d < kDirections; ++d) lateral[d] = extent(lateral_[d]);
-    return overlaps(lateral, along, far);
+    return overlaps(extent, far);
 }
 
 bool Beam::may_touch(const Piece& piece, double far) const {
@@ -169,9 +175,7 @@ bool Beam::may_touch(const Piece& piece, double far) const {
         }
         return found;
     };
-    std::array<Interval, kDirections> lateral;
-    for (std::size_t d = 0; d < kDirections; ++d) lateral[d] = extent(lateral_[d]);
-    return overlaps(lateral, extent(axis_[2]), far);
+    return overlaps(extent, far);
 }
 
 /// Least squares over the points' places across the axis; level where those lie on a line.

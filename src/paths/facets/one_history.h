@@ -69,15 +69,16 @@ class Beam {
   private:
     static constexpr std::size_t kDirections = 4, kMostRays = 6;
     Interval across(std::size_t direction, const Interval& along) const;
-    bool overlaps(const std::array<Interval, kDirections>& lateral, const Interval& along, double far) const;
+    template <typename Extent>
+    bool overlaps(const Extent& extent, double far) const;
 
     Vec3 origin_{0};
     std::array<Vec3, 3> axis_{};
     std::array<Vec3, kDirections> lateral_{};  // unit, at right angles to the axis
     double start_ = 0, turn_ = 0, width_ = 0;
-    std::size_t count_ = 0;
-    // Per direction and ray of the hull: where it is at z = 0, and how fast it moves with z.
-    std::array<std::array<Vec2, kMostRays>, kDirections> ray_{};
+    // Per direction and ray of the hull, which may be there twice: where it is at z = 0, and how fast it
+    // moves with z.
+    std::array<std::array<double, kMostRays>, kDirections> ray_at_{}, ray_moves_{};
     std::array<Vec2, kDirections> room_{};  // at z = 0, and per z
 };
 

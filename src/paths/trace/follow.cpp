@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/raymesh/triangle_scene.h"
+#include "base/util/few.h"
 
 namespace trilens {
 namespace {
@@ -59,8 +60,9 @@ struct Pending {
 
 class Follower {
   public:
-    Follower(const PathWorld& world, const FollowParams& params) : world_(world), params_(params) {}
-    FollowedPaths follow(const PathStart& begin);
+    Follower(const PathWorld& world, const FollowParams& params, FollowedPaths& followed)
+        : world_(world), params_(params), followed_(followed) {}
+    void follow(const PathStart& begin);
 
   private:
     void start(const PathStart& from);
@@ -76,8 +78,8 @@ class Follower {
 
     const PathWorld& world_;
     const FollowParams& params_;
-    FollowedPaths followed_;
-    std::vector<Pending> waiting_;
+    FollowedPaths& followed_;
+    Few<Pending, 16> waiting_;
     LegBefore camera_leg_;
     std::array<Vec3, 2> faint_behind_{Vec3(0), Vec3(0)};  // of paths that reflect first, and refract
 };
@@ -173,12 +175,11 @@ void Follower::run(const Pending& from) {
     std::optional<NextOptic> next;
     if (world_.max_depth > 0)
         next = next_optic(world_, {segment.ray, from.branch.step.optic, from.branch.media});
-    if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
-    if (next && segment.hit.seen()) {
-        if (segment.hit.t <= next->distance + next->touch)  // an object that an optic lies on is seen in it
-            next.reset();
-        else
-            segment.hit = {};
+    if (params_.objects) {
+        // An object that an optic lies on is seen in it.
+        segment.hit = next ? params_.objects->first_hit(segment.ray, 0, next->distance + next->touch)
+                           : params_.objects->first_hit(segment.ray);
+        if (segment.hit.seen()) next.reset();
     }
     // Where rays are looked at for others beside them, what would follow tells them apart: so it is
     // followed, but not for ever.
@@ -203,7 +204,7 @@ void Follower::run(const Pending& from) {
     go_on(on, static_cast<Id>(followed_.segments.size() - 1), *next);
 }
 
-FollowedPaths Follower::follow(const PathStart& begin) {
+void Follower::follow(const PathStart& begin) {
     camera_leg_ = before_paths(world_, begin);
     start(begin);
     while (!waiting_.empty()) {
@@ -212,7 +213,6 @@ FollowedPaths Follower::follow(const PathStart& begin) {
         run(from);
     }
     followed_.cut.faint_behind = glm::max(faint_behind_[0], faint_behind_[1]);
-    return std::move(followed_);
 }
 
 NextOptic next_at(Id optic, const Ray& ray, const SurfaceHit& hit, double touch) {
@@ -263,6 +263,7 @@ const Branch* same_branch(const Branches& ways, const PathSegment& like) {
 }
 
 std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& leaving) {
+    if (world.optics.size() == 1) return meet(world, 0, leaving);
     std::vector<NextOptic> met;
     for (std::size_t i = 0; i < world.optics.size(); ++i)
         if (const auto one = meet(world, static_cast<Id>(i), leaving)) met.push_back(*one);
@@ -285,7 +286,16 @@ bool has_start(const PathWorld& world, const Step& step, Id medium, const LegBef
 }
 
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params) {
-    return Follower(world, params).follow(start);
+    FollowedPaths followed;
+    follow_paths(world, start, params, followed);
+    return followed;
+}
+
+void follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params,
+                  FollowedPaths& followed) {
+    followed.segments.clear();
+    followed.cut = {};
+    Follower(world, params, followed).follow(start);
 }
 
 std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,

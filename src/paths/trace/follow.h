@@ -110,6 +110,9 @@ struct PathStart {
 /// asked for; else, for what would follow tells rays apart, paths go on at two such places and end at the
 /// third.
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
+/// The same into the memory of paths before.
+void follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params,
+                  FollowedPaths& followed);
 
 /// The segments of `like` once more from another start nearby: ray, way, weight, medium, next, turned and
 /// refraction of each are set again; none where the path from there has another history. Nothing is cut and

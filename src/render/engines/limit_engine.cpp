@@ -78,6 +78,7 @@ constexpr std::size_t kSamplesPerTask = 256;
 struct Found {
     std::vector<PathEnd> ends;
     std::vector<Step> steps;
+    FollowedPaths followed;  // of the last sample; empty at the end
 };
 
 class LimitViewer : public Viewer {
@@ -133,7 +134,8 @@ void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media
     on_optic = {};
     on_optic.uv = first.at.uv;
     on_optic.first_end = found.ends.size();
-    follow_sample(world_, {first.at, around}, view, {on_optic, found.ends, found.steps, volumes});
+    follow_sample(world_, {first.at, around}, view,
+                  {on_optic, found.ends, found.steps, found.followed, volumes});
     on_optic.end_count = found.ends.size() - on_optic.first_end;
 }
 
@@ -159,12 +161,14 @@ void LimitViewer::view(const SampleGrid& grid, SampleViews& views) {
         return std::span(owned.sample).subspan(first, std::min(kSamplesPerTask, count - first));
     };
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
-        for (std::size_t task = from; task < to; ++task)
+        for (std::size_t task = from; task < to; ++task) {
             for (const Id s : samples_of(task)) {
                 SampleView& view = views.samples[s];
                 view_sample(view, views.of_optics[s], views.around_of(view), found[task],
                             views.volumes.empty() ? nullptr : &views.volumes[s]);
             }
+            found[task].followed = {};
+        }
     });
     for (std::size_t task = 0; task < found.size(); ++task) {
         for (const Id s : samples_of(task))

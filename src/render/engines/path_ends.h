@@ -126,6 +126,7 @@ struct SamplePaths {
     OpticView& on_optic;  // its incidence, way and cut
     std::vector<PathEnd>& ends;
     std::vector<Step>& steps;
+    FollowedPaths& followed;           // the paths; those of a sample before are overwritten
     SampleVolumes* volumes = nullptr;  // emission along the paths is added, absorption goes into the ends'
                                        // weights; null: volumes are not asked for
 };

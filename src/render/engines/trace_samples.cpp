@@ -66,6 +66,7 @@ void trace_samples(const TraceSamplesParams& params, std::span<const TracedSampl
     const PathWorld& world = path_world(params.world);
     std::vector<PathEnds> found((samples.size() + kTracedPerTask - 1) / kTracedPerTask);
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
+        FollowedPaths followed;
         for (std::size_t task = from; task < to; ++task) {
             PathEnds& own = found[task];
             const std::size_t last = std::min(samples.size(), (task + 1) * kTracedPerTask);
@@ -84,7 +85,8 @@ void trace_samples(const TraceSamplesParams& params, std::span<const TracedSampl
                 }
                 follow_sample(
                     params.world, {*hit, views.around_of(view)}, view,
-                    {on_optic, own.ends, own.steps, params.volumes ? &views.volumes[sample] : nullptr});
+                    {on_optic, own.ends, own.steps, followed,
+                     params.volumes ? &views.volumes[sample] : nullptr});
                 view.ray = of_facets;
                 own.sample.resize(own.ends.size(), sample);
             }
@@ -130,7 +132,7 @@ std::vector<double> add_volumes(const World& world, const std::vector<PathSegmen
 
 void follow_sample(const World& world, const FirstOpticHit& first, const SampleView& view,
                    const SamplePaths& found) {
-    auto& [on_optic, ends, steps, volumes] = found;
+    auto& [on_optic, ends, steps, followed, volumes] = found;
     const SurfaceHit& hit = first.at;
     const PathWorld& paths = path_world(world);
     const double cosine = dot(normalize_or_zero(view.ray.direction), hit.point.normal);
@@ -139,8 +141,7 @@ void follow_sample(const World& world, const FirstOpticHit& first, const SampleV
     on_optic.way = eye;
     const Meeting meeting{view.optic, normalize_or_zero(view.ray.direction), hit.point.position,
                           hit.point.normal, on_optic.incidence.front};
-    const FollowedPaths followed =
-        follow_paths(paths, {meeting, eye, first.around}, {.objects = &object_tracer(world)});
+    follow_paths(paths, {meeting, eye, first.around}, {.objects = &object_tracer(world)}, followed);
     std::vector<double> through;
     if (volumes) through = add_volumes(world, followed.segments, *volumes);
     for (std::size_t i = 0; i < followed.segments.size(); ++i) {
