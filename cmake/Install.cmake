@@ -66,6 +66,9 @@ if(NOT TRILENS_CORE_ONLY)
     COMMAND trilens_command completion fish > ${shell}/trilens.fish
     COMMAND trilens_command scene schema > ${shell}/trilens-scene-1.schema.json
     COMMAND trilens_command sweep schema > ${shell}/trilens-sweep-summary-1.schema.json
+    COMMAND trilens_command sweep schema --file > ${shell}/trilens-sweep-1.schema.json
+    COMMAND trilens_command test --schema > ${shell}/trilens-test-1.schema.json
+    COMMAND trilens_command design --schema > ${shell}/trilens-wish-1.schema.json
     COMMAND ${CMAKE_COMMAND} -E touch ${shell}/made
     DEPENDS trilens_command VERBATIM)
   add_custom_target(trilens_shell ALL DEPENDS ${shell}/made)
@@ -73,7 +76,8 @@ if(NOT TRILENS_CORE_ONLY)
   install(FILES ${shell}/trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
   install(FILES ${shell}/_trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
   install(FILES ${shell}/trilens.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
-  # JSON Schemas, for editors: a scene names its own by "$schema".
+  # JSON Schemas, for editors: a file names its own by "$schema".
   install(FILES ${shell}/trilens-scene-1.schema.json ${shell}/trilens-sweep-summary-1.schema.json
+    ${shell}/trilens-sweep-1.schema.json ${shell}/trilens-test-1.schema.json ${shell}/trilens-wish-1.schema.json
     DESTINATION ${CMAKE_INSTALL_DATADIR}/trilens COMPONENT program)
 endif()

@@ -24,6 +24,7 @@ constexpr std::size_t kNoCount = std::numeric_limits<std::size_t>::max();
 CompareOptions not_given() {
     CompareOptions rules;
     rules.fail = rules.failrelative = rules.failpercent = rules.hardfail = kNotGiven;
+    rules.warn = rules.warnpercent = kNotGiven;
     rules.allowfailures = kNoCount;
     return rules;
 }
@@ -163,26 +164,42 @@ Answer run(const CompareRequest& request, Console& console) {
     return compare_answer(request, inputs);
 }
 
-/// The rules of colour: those given, else the usual ones; where limits are given and none of these, they
-/// judge alone.
-void set_rules(const CompareOptions& given, bool has_limits, CompareOptions& rules) {
-    bool is_any = given.allowfailures != kNoCount;
-    for (double CompareOptions::*const rule : {&CompareOptions::fail, &CompareOptions::failrelative,
-                                               &CompareOptions::failpercent, &CompareOptions::hardfail}) {
-        if (std::isnan(given.*rule)) continue;
-        rules.*rule = given.*rule;
-        is_any = true;
-    }
-    if (given.allowfailures != kNoCount || (has_limits && !is_any)) rules.allowfailures = given.allowfailures;
+/// The rules of colour: those given, else the usual ones. Where limits are given, and none of these, the
+/// limits judge alone; what they count is counted as usual.
+void set_rules(const CompareOptions& given, const std::vector<MetricLimit>& limits, CompareOptions& rules) {
+    for (double CompareOptions::*const rule :
+         {&CompareOptions::fail, &CompareOptions::failrelative, &CompareOptions::failpercent,
+          &CompareOptions::hardfail, &CompareOptions::warn, &CompareOptions::warnpercent})
+        if (!std::isnan(given.*rule)) rules.*rule = given.*rule;
+    if (given.allowfailures != kNoCount) rules.allowfailures = given.allowfailures;
     // A pixel beyond a larger difference that is allowed is no failure by itself.
     if (!std::isnan(given.fail) && std::isnan(given.hardfail))
         rules.hardfail = std::max(rules.hardfail, given.fail);
+    if (limits.empty()) return;
+
+    const auto is_limited = [&](const char* metric) {
+        return std::ranges::any_of(limits, [&](const MetricLimit& one) { return one.metric == metric; });
+    };
+    const bool by_hard = !std::isnan(given.hardfail),
+               by_fail = given.allowfailures != kNoCount || !std::isnan(given.fail) ||
+                         !std::isnan(given.failrelative) || !std::isnan(given.failpercent),
+               by_warn = !std::isnan(given.warn) || !std::isnan(given.warnpercent);
+    if (!by_fail && !by_hard) rules.allowfailures = kNoCount;
+    if (!by_fail && !is_limited("fail")) {
+        rules.fail = INFINITY;
+        if (!by_hard && !is_limited("hard")) rules.hardfail = INFINITY;
+    }
+    if (by_warn) return;
+    if (is_limited("warn"))
+        rules.warnpercent = 100;
+    else
+        rules.warn = INFINITY;
 }
 
 Answer run(const CompareCommand& command, Console& console) {
     CompareRequest request = command.request;
     request.limits = limits_of(command);
-    set_rules(command.rules, !request.limits.empty(), request.options);
+    set_rules(command.rules, request.limits, request.options);
     if (command.mask >= 0) request.options.mask_object = static_cast<Id>(command.mask);
     return run(request, console);
 }
@@ -237,7 +254,6 @@ std::vector<Option> image_options(CompareCommand& command) {
 }
 
 std::vector<Option> tolerance_options(CompareCommand& command) {
-    CompareOptions& o = command.request.options;
     return {
         {.names = "--max",
          .target = &command.limits,
@@ -269,9 +285,12 @@ std::vector<Option> tolerance_options(CompareCommand& command) {
          .target = &command.rules.allowfailures,
          .help = "so many pixels may differ by any amount",
          .range = {0}},
-        {.names = "--warn", .target = &o.warn, .help = "difference worth a warning", .range = {0}},
+        {.names = "--warn",
+         .target = &command.rules.warn,
+         .help = "difference worth a warning",
+         .range = {0}},
         {.names = "--warnpercent",
-         .target = &o.warnpercent,
+         .target = &command.rules.warnpercent,
          .help = "percentage of pixels that may be so",
          .range = {0, 100}},
         {.names = "--radius",

@@ -164,11 +164,17 @@ std::vector<Command> sweep_folder_commands() {
                               .is_required = true}},
                  .schema = "sweep"};
     join.body = [merged](Console& console) { return merge(*merged, console); };
-    Command schema{.name = "schema", .summary = "the JSON Schema of summary.json", .schema = "sweep"};
-    schema.body = [](Console&) {
+    auto of_file = std::make_shared<bool>(false);
+    Command schema{.name = "schema",
+                   .summary = "the JSON Schema of summary.json, or of the files that say what is swept",
+                   .options = {{.names = "--file",
+                                .target = of_file.get(),
+                                .help = "of the files that `sweep run` reads: sweep.json"}},
+                   .schema = "sweep"};
+    schema.body = [of_file](Console&) {
         Answer answer;
-        answer.text = summary_schema();
-        answer.fields["summary"] = summary_schema();
+        answer.text = *of_file ? sweep_schema() : summary_schema();
+        answer.fields[*of_file ? "file" : "summary"] = answer.text;
         return answer;
     };
     return {folder_command("status", "what is done of a sweep", status),

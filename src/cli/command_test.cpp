@@ -10,7 +10,16 @@
 namespace trilens {
 namespace {
 
-Answer run(const SuiteRequest& request, Console& console) {
+struct TestOptions {
+    SuiteRequest request;
+    bool schema = false;
+};
+
+Answer run(const TestOptions& options, Console& console) {
+    if (options.schema)
+        return Answer{.text = test_schema(), .fields = {{"schema_document", Json::parse(test_schema())}}};
+    const SuiteRequest& request = options.request;
+    if (request.folders.empty()) throw UsageError("test needs folders that hold tests");
     console.files().writes(request.junit);
     console.files().writes(request.html);
     SuiteObserver observer;
@@ -28,7 +37,8 @@ Answer run(const SuiteRequest& request, Console& console) {
 }  // namespace
 
 Command test_command() {
-    auto request = std::make_shared<SuiteRequest>();
+    auto options = std::make_shared<TestOptions>();
+    SuiteRequest* const request = &options->request;
     Command command{
         .name = "test",
         .summary =
@@ -37,8 +47,10 @@ Command test_command() {
             {{.names = "DIRS",
               .target = &request->folders,
               .help = "folders that hold tests, at any depth: a test is a folder with a test.json",
-              .offer = Offer::kFolder,
-              .is_required = true},
+              .offer = Offer::kFolder},
+             {.names = "--schema",
+              .target = &options->schema,
+              .help = "print the JSON Schema of test.json, and run nothing"},
              {.names = "-k,--keyword",
               .target = &request->pattern,
               .help = "only tests with this in their name or tags; with * or ? in it, all of a name or tag",
@@ -62,7 +74,7 @@ Command test_command() {
               .value = "FILE",
               .offer = Offer::kFile}},
         .schema = "test"};
-    command.body = [request](Console& console) { return run(*request, console); };
+    command.body = [options](Console& console) { return run(*options, console); };
     return command;
 }
 

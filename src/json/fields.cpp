@@ -106,4 +106,11 @@ Json object_schema(const ObjectSchema& object, const std::vector<FieldSchema>& f
     return schema;
 }
 
+Json file_schema(const std::string& name, const Json& object) {
+    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"$id", name + ".schema.json"}};
+    schema.update(object);
+    schema["properties"]["$schema"] = {{"type", "string"}};
+    return schema;
+}
+
 }  // namespace trilens

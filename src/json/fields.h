@@ -180,6 +180,10 @@ struct ObjectSchema {
 };
 Json object_schema(const ObjectSchema& object, const std::vector<FieldSchema>& fields);
 
+/// The schema of a file, of its object's: with its draft and its name, "trilens-wish-1" for instance; files
+/// may name it by "$schema", for editors.
+Json file_schema(const std::string& name, const Json& object);
+
 template <typename T>
 Json object_schema(const ObjectSchema& object, const std::vector<Field<T>>& fields) {
     return object_schema(object, std::vector<FieldSchema>(fields.begin(), fields.end()));

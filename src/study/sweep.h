@@ -104,6 +104,9 @@ SweepRequest read_sweep_file(const std::string& file, SweepRequest base);
 /// Whether the file is meant as a sweep: a JSON object with "over" in it. False for what cannot be read.
 bool is_sweep_file(const std::string& file);
 
+/// The JSON Schema (draft 7) of sweep files, as text.
+std::string sweep_schema();
+
 /// Whether one process does all of it. Throws UsageError as run_sweep does.
 bool is_whole_sweep(const std::string& shard);
 

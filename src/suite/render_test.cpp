@@ -76,11 +76,17 @@ const std::vector<Field<RenderTest>>& test_fields() {
     return fields;
 }
 
+const Json& test_schema_json() {
+    static const Json schema = file_schema(
+        "trilens-test-1", object_schema({.title = "a test", .required = {"against"}}, test_fields()));
+    return schema;
+}
+
 /// The JSON of a test.json, checked.
 Json checked_test(const std::string& file) {
-    static const Json schema = object_schema({.title = "a test", .required = {"against"}}, test_fields());
     Json json = parse_json(read_required_file(file), file);
-    if (const auto found = find_problem(json, schema)) fail_at(file, found->place, found->message);
+    if (const auto found = find_problem(json, test_schema_json()))
+        fail_at(file, found->place, found->message);
     return json;
 }
 
@@ -162,6 +168,10 @@ std::string against_name(Against against) {
     for (const auto& [name, value] : kAgainst)
         if (value == against) return name;
     return "";
+}
+
+std::string test_schema() {
+    return test_schema_json().dump(2) + "\n";
 }
 
 std::vector<std::string> limited_names() {

@@ -60,6 +60,9 @@ struct RenderTest {
 /// Throws InputError with the file and the place of the first problem, and the nearest known name.
 RenderTest read_render_test(const std::string& folder);
 
+/// The JSON Schema (draft 7) of test.json, as text.
+std::string test_schema();
+
 /// What `max` may name.
 std::vector<std::string> limited_names();
 

@@ -179,6 +179,19 @@ TEST_CASE("--max limits any metric by the name that the JSON has", "[cli][compar
     CHECK(run_trilens(usual + "--max displacement_p95=1000 --failpercent 0").exit_code == 1);
     CHECK(run_trilens(usual + "--fail 9").exit_code == 0);
 
+    // Nor do they warn, or stand in the summary; counts that are limited are counted as usual.
+    const CommandRun alone = run_trilens(usual + "--max displacement_p95=1000");
+    CHECK(alone.out.find("(colours are not judged)") != std::string::npos);
+    CHECK(alone.out.find("PASS\n") != std::string::npos);
+    const std::string said = run_trilens(usual + "--max displacement_p95=1000 --json").out;
+    for (const char* colour : {"fail", "hardfail", "warn", "allowfailures"})
+        CHECK(said.find("\"" + std::string(colour) + "\": null") != std::string::npos);
+    CHECK(run_trilens(usual + "--max fail=0").exit_code == 1);
+    CHECK(run_trilens(usual + "--max fail=100000000").out.find(" beyond fail, ") != std::string::npos);
+    const CommandRun hard = run_trilens(usual + "--max displacement_p95=1000 --hardfail 1000");
+    CHECK(hard.exit_code == 0);
+    CHECK(hard.out.find("(0 beyond hardfail)") != std::string::npos);
+
     // A limit on what nothing was measured of does not hold.
     const std::string plain = write(folder, "plain.exr", coloured(""));
     const CommandRun nothing = run_trilens("compare " + plain + " " + plain + " --max lost_percent=100");

@@ -252,3 +252,12 @@ TEST_CASE("a sweep of many scenes does not end for one that has nothing to sweep
         CHECK(!fs::exists(out));
     }
 }
+
+TEST_CASE("the samples that a sweep's runs had stand in runs.csv, also where a pointer names them",
+          "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_samples");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    const std::string out = folder + "/out";
+    REQUIRE(run_trilens("sweep run " + scene + " --size 24x18 --over /film/spp=1,3 -o " + out).exit_code == 0);
+    CHECK(column(out, "spp") == std::vector<double>{1, 3});
+}

@@ -226,3 +226,20 @@ TEST_CASE("what a glTF has that scenes lack is told of", "[scene]") {
     CHECK(warns(scene, "the extension 'KHR_materials_sheen' is ignored"));
     CHECK(warns(scene, "the extension 'KHR_node_visibility' is ignored"));
 }
+
+TEST_CASE("maps that an optic of a glTF does not show are told of", "[scene]") {
+    const std::string folder = scratch_dir("scene_gltf_optic_maps");
+    GltfParts parts;
+    parts.materials = R"([{"name":"paint","emissiveFactor":[1,0,0],"occlusionTexture":{"index":0},
+        "pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0,"baseColorTexture":{"index":0},
+        "metallicRoughnessTexture":{"index":0}}}])";
+    parts.more =
+        std::string(
+            R"(,"textures":[{"source":0}],"images":[{"mimeType":"image/png","uri":"data:image/png;base64,)") +
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC\"}]";
+    const Scene scene = load(write_gltf(folder, parts), {{"squ*"}, {}, ""});
+    REQUIRE(scene.meshes[0].role == Role::kOptic);
+    for (const char* map : {"baseColorTexture", "metallicRoughnessTexture", "occlusionTexture"})
+        CHECK(warns(scene, std::string(map) + " of an optic is not drawn (of 'paint')"));
+    CHECK(warns(scene, "of an optic: not drawn there: emissiveFactor"));
+}

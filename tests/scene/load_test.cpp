@@ -92,6 +92,10 @@ TEST_CASE("what is doubtful is a warning with its place", "[scene]") {
                  "reflects and refracts"));
     CHECK(warned({{"/materials/2/unlit", "false"}, {"/lights", "[]"}},
                  "/lights: there is no light: every object whose material is not unlit is black"));
+    CHECK(warned({{"/materials/0/emissiveFactor", "[1,0,0]"},
+                  {"/materials/0/occlusionTexture", R"({"pattern": "checker"})"}},
+                 "/meshes/1/material: the material 'chrome' of an optic: not drawn there: occlusionTexture, "
+                 "emissiveFactor"));
     CHECK_FALSE(warned({{"/lights", "[]"}},
                        "/lights: there is no light: every object whose material is not unlit is black"));
 }

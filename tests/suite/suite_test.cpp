@@ -142,3 +142,14 @@ TEST_CASE("JUnit holds any text", "[suite]") {
     CHECK(xml.find("<testcase name=\"a/&lt;b&gt;\" classname=\"a\" time=\"1.500\">") != std::string::npos);
     CHECK(xml.find("1 &lt; 2 &amp; &quot;x&quot;\n\xEF\xBF\xBD</failure>") != std::string::npos);
 }
+
+TEST_CASE("a test.json may name its schema, which has every field of it", "[suite]") {
+    const std::string schema = test_schema();
+    for (const char* word :
+         {"trilens-test-1.schema.json", "against", "scene", "max", "failpercent", "platforms"})
+        CHECK(schema.find('"' + std::string(word) + '"') != std::string::npos);
+    const std::string folder = trilens_test::scratch_dir("suite_schema");
+    replace_text_file(folder + "/test.json",
+                      R"({"$schema": "trilens-test-1.schema.json", "against": "truth"})");
+    CHECK(read_render_test(folder).against == std::vector<Against>{Against::kTruth});
+}

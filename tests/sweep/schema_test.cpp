@@ -52,3 +52,24 @@ TEST_CASE("sweep: the schema accepts every summary that is written, and refuses 
     TRILENS_SKIP("needs valijson");
 }
 #endif
+
+TEST_CASE("sweep: a sweep file may name its schema, which accepts it", "[sweep][oracle]") {
+    valijson::Schema schema;
+    const nlohmann::json text = nlohmann::json::parse(sweep_schema());
+    valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema);
+    const std::string folder = trilens_test::scratch_dir("sweep_schema"), file = folder + "/sweep.json";
+    nlohmann::json sweep = {{"$schema", "trilens-sweep-1.schema.json"},
+                            {"scenes", {"a.json"}},
+                            {"over", {{{"axis", "resolution"}, {"values", "1..8:x2"}}}}};
+    const auto accepts = [&] {
+        return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(sweep),
+                                              nullptr);
+    };
+    CHECK(accepts());
+    replace_text_file(file, sweep.dump());
+    CHECK(read_sweep_file(file).scenes.size() == 1);
+    sweep["ovr"] = 1;
+    CHECK_FALSE(accepts());
+    replace_text_file(file, sweep.dump());
+    CHECK_THROWS_AS(read_sweep_file(file), InputError);
+}

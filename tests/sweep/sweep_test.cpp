@@ -328,7 +328,7 @@ TEST_CASE("sweep: each run's difference has a factor of its own, which it states
     const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
     double previous = 0;
     for (const RunRecord& run : summary.runs) {
-        const double scale = difference_scale(run.metrics.at("rgb_p95"));
+        const double scale = difference_scale(run.metrics.at("rgb_p99"));
         CHECK(scale >= 4 * previous);  // errors fall by 16
         previous = scale;
         CHECK(html.find("|projected − truth| × " + shortest_text(scale) + ",") != std::string::npos);

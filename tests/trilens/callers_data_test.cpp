@@ -101,7 +101,7 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens][b
     only_errors("base64_text", [] { base64_text({}); });
     only_errors("engine_names", [] { engine_names(); });
     only_errors("layer_names", [] { layer_names(); });
-    only_errors("summary_schema", [] { summary_schema(); });
+    only_errors("summary_schema", [] { summary_schema(), sweep_schema(), test_schema(); });
     only_errors("scene_schema", [] { scene_schema(); });
     only_errors("version", [] { version(), library_versions(), this_platform(), farm_systems(); });
     for (const int n : {-2147483647 - 1, -1}) {

@@ -76,14 +76,42 @@ std::string left_out_text(const std::string& image, const std::vector<std::strin
     return text + "\n";
 }
 
-std::string summary_text(const ComparedInputs& inputs) {
+/// Null: it does not judge.
+Json thresholds_json(const CompareOptions& o, const std::vector<MetricLimit>& limits) {
+    const auto threshold = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+    const bool is_counted = o.allowfailures != std::numeric_limits<std::size_t>::max();
+    Json json{{"fail", threshold(o.fail)},
+              {"failpercent", o.failpercent},
+              {"hardfail", threshold(o.hardfail)},
+              {"failrelative", o.failrelative},
+              {"allowfailures", is_counted ? Json(o.allowfailures) : Json(nullptr)},
+              {"warn", threshold(o.warn)},
+              {"warnpercent", o.warnpercent}};
+    for (const MetricLimit& limit : limits) json["max"][limit.metric] = limit.value;
+    return json;
+}
+
+/// How many are beyond the differences that are judged.
+std::string pixels_text(const CompareCounts& counts, const CompareOptions& options) {
+    std::string beyond;
+    const auto add = [&](double threshold, std::size_t count, const char* name) {
+        if (std::isfinite(threshold))
+            beyond += fmt::format("{}{} beyond {}", beyond.empty() ? "" : ", ", count, name);
+    };
+    add(options.fail, counts.fail, "fail");
+    add(options.hardfail, counts.hard, "hardfail");
+    add(options.warn, counts.warn, "warn");
+    return fmt::format("pixels        {} ({})\n", counts.pixels,
+                       beyond.empty() ? "colours are not judged" : beyond);
+}
+
+std::string summary_text(const ComparedInputs& inputs, const CompareOptions& options) {
     const Comparison& comparison = inputs.comparison;
     const Metrics& m = comparison.metrics;
     const CompareCounts& c = comparison.counts;
     std::string text = left_out_text("reference", inputs.images.only_reference) +
                        left_out_text("test", inputs.images.only_test);
-    text += fmt::format("pixels        {} ({} beyond fail, {} beyond hardfail, {} beyond warn)\n", c.pixels,
-                        c.fail, c.hard, c.warn);
+    text += pixels_text(c, options);
     text += fmt::format("error         mae {:.6g}  rmse {:.6g}  relmse {:.6g}  max {:.6g}\n", m.mae, m.rmse,
                         m.relmse, m.max);
     text += fmt::format("likeness      psnr {:.2f} dB  ssim {:.6f}  flip {:.6f} (0: none to be seen)\n",
@@ -119,15 +147,7 @@ Answer compare_answer(const CompareRequest& command, const ComparedInputs& input
     const CompareOptions& o = command.options;
     answer.fields["ref"] = {{"file", command.reference}};
     answer.fields["test"] = {{"file", command.test}};
-    answer.fields["thresholds"] = {{"fail", o.fail},
-                                   {"failpercent", o.failpercent},
-                                   {"hardfail", o.hardfail},
-                                   {"failrelative", o.failrelative},
-                                   {"allowfailures", o.allowfailures},
-                                   {"warn", o.warn},
-                                   {"warnpercent", o.warnpercent}};
-    for (const MetricLimit& limit : command.limits)
-        answer.fields["thresholds"]["max"][limit.metric] = limit.value;
+    answer.fields["thresholds"] = thresholds_json(o, command.limits);
     answer.fields["left_out"] = {{"ref", inputs.images.only_reference}, {"test", inputs.images.only_test}};
     answer.fields["counts"] = {{"pixels", c.pixels},   {"fail", c.fail},         {"warn", c.warn},
                                {"hard", c.hard},       {"nan_ref", c.nan_ref},   {"nan_test", c.nan_test},
@@ -152,7 +172,7 @@ Answer compare_answer(const CompareRequest& command, const ComparedInputs& input
                                : comparison.verdict == Verdict::kWarning ? "warning"
                                                                          : "pass";
     answer.fields["reasons"] = comparison.reasons;
-    answer.text = summary_text(inputs);
+    answer.text = summary_text(inputs, o);
     answer.code = comparison.verdict == Verdict::kFailure ? ExitCode::kExceeded : ExitCode::kDone;
     return answer;
 }

@@ -103,9 +103,7 @@ const Json& wish_schema_json() {
                  "What an eye is to see in a mirror or through a lens. Right-handed; any one length.",
              .required = {"version", "eye", "patch", "wish"}},
             wish_fields());
-        Json whole{{"$schema", "http://json-schema.org/draft-07/schema#"},
-                   {"$id", "trilens-wish-1.schema.json"}};
-        whole.update(root);
+        Json whole = file_schema("trilens-wish-1", root);
         Json vec3{{"type", "array"}, {"minItems", 3}, {"maxItems", 3}, {"items", ref("number")}};
         whole["definitions"] = {
             {"number", number_in(-1e30, 1e30)},

@@ -181,8 +181,10 @@ class SceneWriter {
         if (glass) material["transmissionFactor"] = 1;
         const double rough = before.value("roughnessFactor", 0.0);
         if (rough > kMostRoughness) material["roughnessFactor"] = 0;
-        for (const char* key : {"baseColorTexture", "metallicRoughnessTexture", "transmissionTexture",
-                                "alphaMode", "alphaFactor", "alphaCutoff", "doubleSided", "occlusionTexture"})
+        for (const char* key :
+             {"baseColorTexture", "metallicRoughnessTexture", "transmissionTexture", "occlusionTexture"})
+            if (material.erase(key) > 0) left_out_.note(std::string(key) + " of an optic", name);
+        for (const char* key : {"alphaMode", "alphaFactor", "alphaCutoff", "doubleSided"})
             material.erase(key);
         if (material == before) return false;
         const double metallic = before.value("metallicFactor", 0.0);

@@ -37,6 +37,23 @@ Id find_material(const Node& node, const Reading& reading) {
     return static_cast<Id>(found - known.begin());
 }
 
+/// What a material has that optics do not show: a mirror or glass is of one colour, perfect or rough alike
+/// everywhere, and neither shines nor is hidden from the sky.
+void warn_of_idle(const std::string& place, const Material& material, Reading& reading) {
+    std::string idle;
+    const auto add = [&](bool has, const char* key) {
+        if (has) idle += (idle.empty() ? "" : ", ") + std::string(key);
+    };
+    add(material.base_color_texture != nullptr, "baseColorTexture");
+    add(material.metallic_roughness_texture.picture && material.roughness_factor > 0,
+        "metallicRoughnessTexture");
+    add(material.occlusion_texture.picture != nullptr, "occlusionTexture");
+    add(material.emissive_factor != Vec3(0), "emissiveFactor");
+    add(material.alpha_mode != AlphaMode::kOpaque, "alphaMode");
+    if (!idle.empty())
+        reading.warn(place, "the material '" + material.name + "' of an optic: not drawn there: " + idle);
+}
+
 void check_optic_material(const Node& node, Id index, Reading& reading) {
     if (index == kNone)
         node["material"].fail("an optic cannot inherit: name a mirror or a glass of 'materials'");
@@ -48,10 +65,7 @@ void check_optic_material(const Node& node, Id index, Reading& reading) {
     if (mirror && glass) node["material"].fail(optic + "cannot be mirror and glass at once");
     if (material.roughness_factor > kMostRoughness)
         node["material"].fail(optic + "must have a roughnessFactor of at most " + describe(kMostRoughness));
-    if (material.metallic_roughness_texture.picture && material.roughness_factor > 0)
-        reading.warn(node["material"].place,
-                     "a metallicRoughnessTexture on an optic is ignored: it is rough alike everywhere");
-    if (material.base_color_texture) reading.warn(node["material"].place, "a texture on an optic is ignored");
+    warn_of_idle(node["material"].place, material, reading);
 }
 
 void warn_count(std::size_t count, const std::string& what, const std::string& place, Reading& reading) {

@@ -157,11 +157,17 @@ const std::vector<Field<SweepFile>>& sweep_fields() {
     return fields;
 }
 
+const Json& sweep_schema_json() {
+    static const Json schema = file_schema(
+        "trilens-sweep-1", object_schema({.title = "a sweep file", .required = {"over"}}, sweep_fields()));
+    return schema;
+}
+
 /// A sweep file's JSON, checked.
 Json checked_sweep(const std::string& file) {
-    static const Json schema = object_schema({.title = "a sweep file", .required = {"over"}}, sweep_fields());
     Json json = parse_json(read_required_file(file), file);
-    if (const auto found = find_problem(json, schema)) fail_at(file, found->place, found->message);
+    if (const auto found = find_problem(json, sweep_schema_json()))
+        fail_at(file, found->place, found->message);
     return json;
 }
 
@@ -181,6 +187,10 @@ AxisRequest read_axis(const Json& part) {
 }
 
 }  // namespace
+
+std::string sweep_schema() {
+    return sweep_schema_json().dump(2) + "\n";
+}
 
 SweepFile read_sweep_file(const std::string& file) {
     const Json json = checked_sweep(file);

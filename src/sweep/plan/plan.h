@@ -62,6 +62,9 @@ struct SweepFile {
 /// problem.
 SweepFile read_sweep_file(const std::string& file);
 
+/// The JSON Schema (draft 7) of sweep files, as text.
+std::string sweep_schema();
+
 /// Whether the file is meant as a sweep: a JSON object with "over" in it. False for what cannot be read.
 bool is_sweep_file(const std::string& file);
 

@@ -60,11 +60,9 @@ void append(std::vector<PagePicture> more, std::vector<PagePicture>& pictures) {
 PagePicture run_difference(const Image& image, const Image& truth, const RunRecord& run) {
     const double largest = find_value(run.metrics, "rgb_max").value_or(0);
     if (largest == 0) return words_alone("difference: none, every colour is the truth's");
-    // The first that is not zero: where most are equal the few others decide.
-    double decisive = largest;
-    for (const char* name : {"rgb_p99", "rgb_p95"})
-        if (const double value = find_value(run.metrics, name).value_or(0); value > 0) decisive = value;
-    const double scale = difference_scale(decisive);
+    // Where all but a hundredth are equal the few others decide.
+    const double most = find_value(run.metrics, "rgb_p99").value_or(0);
+    const double scale = difference_scale(most > 0 ? most : largest);
     return difference_picture(
         image, truth, scale,
         "|projected − truth| × " + shortest_text(scale) + ", largest " + rounded_text(largest, 2));

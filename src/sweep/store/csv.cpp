@@ -82,6 +82,7 @@ std::map<std::string, std::string> run_words(const SweepSummary& summary, const 
         const AxisValue* const value = find_coordinate(run.plan.at, axis);
         return value ? value->text : otherwise;
     };
+    const std::string spp = along("/film/spp", std::to_string(subject.spp));
     return {{"id", run.plan.id},
             {"scene", along("scene", subject.scene)},
             {"camera", along("camera", subject.camera)},
@@ -89,7 +90,7 @@ std::map<std::string, std::string> run_words(const SweepSummary& summary, const 
             {"method", along("engine", subject.method)},
             {"truth", subject.truth},
             {"n", run.plan.n() > 0 ? std::to_string(run.plan.n()) : ""},
-            {"spp", along("spp", std::to_string(subject.spp))},
+            {"spp", along("spp", spp)},
             {"status", state_name(run.state)},
             {"exit_code", run.state == RunState::kMissing ? "" : std::to_string(run.exit_code)},
             {"image", is_done ? files + "/image.exr" : ""},
