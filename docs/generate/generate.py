@@ -9,6 +9,7 @@ where the module is built), of the C++ headers, and the tables of results/. Pict
 kept in OUT until it changes."""
 import argparse
 import csv
+import itertools
 import pathlib
 import re
 import shutil
@@ -32,7 +33,11 @@ def first_comment(text):
     if not found or text[:found.start()].count("\n") > 2:
         return ""
     lines = [line.strip().removeprefix("//") for line in found[0].strip().split("\n")]
-    return " ".join(line.strip() for line in lines if not line.startswith("     "))
+    text = ""
+    for is_code, part in itertools.groupby(lines, lambda line: line.startswith("     ")):
+        part = [line.strip() for line in part]
+        text += "\n\n```text\n" + "\n".join(part) + "\n```\n\n" if is_code else " ".join(part)
+    return text.strip()
 
 
 def write_examples(program, out):
