@@ -78,8 +78,8 @@ const char* const kCamerasExample = R"json({
   ],
   "lights": [
     { "type": "rectangle", "name": "window", "position": [0, 3.9995, 1], "direction": [0, -1, 0], "size": [2.4, 2], "intensity": 7.5, "color": [1, 0.95, 0.85],
-      "samples": 9, "shadows": true },
-    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 12, "shadows": true }
+      "samples": 16, "shadows": true },
+    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 32, "shadows": true }
   ]
 }
 )json";
@@ -207,8 +207,8 @@ const char* const kCausticExample = R"json({
                             178,177,176] }
   ],
   "lights": [
-    { "type": "directional", "direction": [-0.4, -1, -0.6], "angle": 3, "samples": 9, "intensity": 2.2, "color": [1, 0.95, 0.88], "shadows": true },
-    { "type": "environment", "intensity": 1, "samples": 24, "shadows": true }
+    { "type": "directional", "direction": [-0.4, -1, -0.6], "angle": 3, "samples": 16, "intensity": 2.2, "color": [1, 0.95, 0.88], "shadows": true },
+    { "type": "environment", "intensity": 1, "samples": 72, "shadows": true }
   ],
   "render": { "maxDepth": 2 }
 }

@@ -47,8 +47,8 @@ constexpr const char* kMirrorSphere = R"json({
   ],
   "lights": [
     { "type": "rectangle", "name": "window", "position": [0, 3.9995, 1], "direction": [0, -1, 0], "size": [2.4, 2], "intensity": 7.5, "color": [1, 0.95, 0.85],
-      "samples": 9, "shadows": true },
-    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 12, "shadows": true }
+      "samples": 16, "shadows": true },
+    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 32, "shadows": true }
   ]
 }
 )json";
@@ -121,7 +121,7 @@ constexpr const char* kCreasedCage = R"json({
   "lights": [
     { "type": "rectangle", "name": "soft box", "position": [-5.25, 3.2, 3.5], "direction": [1, 0, -0.3], "size": [5.2, 5.6], "intensity": 4, "color": [1, 0.93, 0.82],
       "samples": 16, "shadows": true },
-    { "type": "environment", "samples": 24, "shadows": true }
+    { "type": "environment", "samples": 72, "shadows": true }
   ]
 }
 )json";
@@ -168,8 +168,8 @@ constexpr const char* kWaterPatch = R"json({
       "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] }
   ],
   "lights": [
-    { "type": "directional", "direction": [0.5, -1, -0.35], "angle": 2, "samples": 9, "intensity": 2.1, "color": [1, 0.95, 0.86], "shadows": true },
-    { "type": "environment", "intensity": 0.9, "samples": 48, "shadows": true }
+    { "type": "directional", "direction": [0.5, -1, -0.35], "angle": 2, "samples": 16, "intensity": 2.1, "color": [1, 0.95, 0.86], "shadows": true },
+    { "type": "environment", "intensity": 0.9, "samples": 96, "shadows": true }
   ]
 }
 )json";
@@ -255,7 +255,7 @@ constexpr const char* kMirrorCylinder = R"json({
   "lights": [
     { "type": "rectangle", "position": [-3.2, 4.8, 2.8], "direction": [3.2, -4.8, -1.8], "size": [1.6, 1.6], "intensity": 34, "color": [1, 0.93, 0.82],
       "samples": 16, "shadows": true },
-    { "type": "environment", "samples": 24, "shadows": true }
+    { "type": "environment", "samples": 72, "shadows": true }
   ]
 }
 )json";
@@ -308,8 +308,8 @@ constexpr const char* kCrystalBall = R"json({
       "faceVertexCounts": [3,3,3,3], "faceVertexIndices": [1,0,4, 2,1,4, 3,2,4, 0,3,4] }
   ],
   "lights": [
-    { "type": "directional", "direction": [-0.5, -1, -0.6], "angle": 2, "samples": 9, "intensity": 2, "color": [1, 0.95, 0.86], "shadows": true },
-    { "type": "environment", "intensity": 0.7, "samples": 24, "shadows": true }
+    { "type": "directional", "direction": [-0.5, -1, -0.6], "angle": 2, "samples": 16, "intensity": 2, "color": [1, 0.95, 0.86], "shadows": true },
+    { "type": "environment", "intensity": 0.7, "samples": 72, "shadows": true }
   ]
 }
 )json";
