@@ -156,6 +156,10 @@ inline bool faces_front(const SurfaceGrid& grid, const IdTriple& facet, const Ve
     return dot(cross(b - a, c - a), direction) <= 0;
 }
 
+/// Of a grid that bounds a body, 1 where its facets' fronts are outside of it and -1 where they are inside; 0
+/// where it bounds none: an edge is not two facets' one way each.
+int body_orientation(const SurfaceGrid& grid);
+
 // A surface's grid as triangles of a scene.
 
 /// Appends the facets of `grid` to `scene` as triangles of `object`; primitive f is facet f. Points that

@@ -51,13 +51,19 @@ std::optional<ChainRay> image_over(const MirrorChain& chain, const Vec3& point, 
 
 // The images of a grid's points over a chain of mirrors: each found from its neighbour's.
 
+/// Whether a ray of this direction may come to a facet from outside of the body that the grid bounds, by its
+/// body_orientation(); true where it bounds none. From inside nothing is seen that stands outside.
+inline bool may_face_outside(int orientation, const SurfaceGrid& grid, Id facet, const Vec3& direction) {
+    return orientation == 0 || faces_front(grid, grid.facets[facet], direction) == (orientation > 0);
+}
+
 /// The eye's rays over the chain in these directions, but those that miss a mirror.
 std::vector<ChainRay> rays_over(const MirrorChain& chain, std::span<const Vec3> towards);
 
 /// Per point of the grid one image, where the search finds one: first from the ray of `starts` that passes it
 /// at the smallest angle, then from point to point along facets. Where a point has several images, neighbours
-/// have those that belong together. Of a closed surface points all of whose facets are turned away, and that
-/// stand next to none that is not, have none. The same for any number of threads.
+/// have those that belong together. Of a grid that bounds a body points all of whose facets show their inside, and
+/// that stand next to none that is not such, have none. The same for any number of threads.
 std::vector<std::optional<ChainRay>> grid_images(const MirrorChain& chain, std::span<const ChainRay> starts,
                                                  const SurfaceGrid& grid);
 

@@ -33,7 +33,7 @@ class Spread {
         tries_.resize(grid.points.size(), 0);
         around_ = facets_around(grid.facets, grid.points.size(),
                                 [&](Id corner) { return grid.corner_point[corner]; });
-        closed_ = is_closed();
+        orientation_ = body_orientation(grid);
     }
     void from(Id root);
 
@@ -44,37 +44,20 @@ class Spread {
         Id point = kNone, start = kNone;
     };
     std::vector<Wanted> around(const std::vector<Id>& front);
-    bool is_closed() const;
     bool may_be_seen(Id point) const;
 
     const MirrorChain& chain_;
     const SurfaceGrid& grid_;
     FacetsAround around_;
     std::vector<std::uint8_t> tries_;
-    bool closed_ = false;
+    int orientation_ = 0;  // see body_orientation()
 };
 
-/// Whether every edge is one of two facets, so that facets turned away are hidden.
-bool Spread::is_closed() const {
-    std::vector<std::pair<Id, Id>> edges;
-    edges.reserve(3 * grid_.facets.size());
-    for (const IdTriple& facet : grid_.facets)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Id a = grid_.corner_point[facet[k]], b = grid_.corner_point[facet[(k + 1) % 3]];
-            edges.emplace_back(std::min(a, b), std::max(a, b));
-        }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0; i < edges.size(); i += 2)
-        if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return false;
-    return true;
-}
-
-/// Whether some facet at the point is turned to the eye; on an open surface either side is.
+/// Whether some facet at the point may be seen.
 bool Spread::may_be_seen(Id point) const {
-    if (!closed_) return true;
     const auto facets = around_.of(point);
     return std::any_of(facets.begin(), facets.end(), [&](Id f) {
-        return faces_front(grid_, grid_.facets[f], images[point]->ray.direction);
+        return may_face_outside(orientation_, grid_, f, images[point]->ray.direction);
     });
 }
 

@@ -233,7 +233,7 @@ NestedOptic::NestedOptic(const NestedStage& stage, std::vector<Id> chain, Id opt
     }
     builder_ = paths_over_views(ProbeContext{&world_, optic, stage.optics[optic].surface, make_camera()}, own,
                                 views_, divide);
-    cover_ = NestedCover(builder_->paths().outline, unfolded_facets());
+    cover_ = NestedCover(builder_->paths().outline, seen_facets());
     if (deeper_) deeper_->set_room(cover_.area());
 }
 
@@ -246,26 +246,30 @@ CornerView NestedOptic::view_of(const ChainRay& ray, const Vec3& point) const {
             whole * ray.ray_scale() * ray.ray.direction};
 }
 
-/// Facets whose image is turned as an odd or even number of mirrors turns it: no fold lies between.
-std::vector<char> NestedOptic::unfolded_facets() const {
+/// Facets that may be seen from outside of the body, if they bound one: behind a hole in the images of its near
+/// side the far side's inside is none. And whose image is turned as an odd or even number of mirrors turns it:
+/// no fold lies between.
+std::vector<char> NestedOptic::seen_facets() const {
     const Vec3 origin = stage_.camera.screen(stage_.eye);
     const double turned = triple(stage_.camera.screen(stage_.eye + Vec3(1, 0, 0)) - origin,
                                  stage_.camera.screen(stage_.eye + Vec3(0, 1, 0)) - origin,
                                  stage_.camera.screen(stage_.eye + Vec3(0, 0, 1)) - origin);
     const SurfaceGrid& own = grid();
-    std::vector<char> unfolded(own.facets.size(), 0);
-    for (std::size_t f = 0; f < unfolded.size(); ++f) {
+    const int orientation = body_orientation(own);
+    std::vector<char> seen(own.facets.size(), 0);
+    for (std::size_t f = 0; f < seen.size(); ++f) {
         const IdTriple& corner = own.facets[f];
         Vec3 incident(0);
         for (const Id c : corner) incident += normalize_or_zero(views_[c].incident);
         const double mirrored = chain_.size() % 2 == 1 ? -1 : 1;
         const double facing = faces_front(own, corner, incident) ? -1 : 1;
-        unfolded[f] =
+        seen[f] =
+            may_face_outside(orientation, own, static_cast<Id>(f), incident) &&
             mirrored * facing * turned *
                 triple(views_[corner[0]].screen, views_[corner[1]].screen, views_[corner[2]].screen) >
             0;
     }
-    return unfolded;
+    return seen;
 }
 
 const ChainRay* NestedOptic::nearest_image(const Vec3& point) const {

@@ -142,7 +142,7 @@ class NestedOptic {
 
   private:
     PathCamera make_camera() const;
-    std::vector<char> unfolded_facets() const;
+    std::vector<char> seen_facets() const;
     CornerView view_of(const ChainRay& ray, const Vec3& point) const;
     const ChainRay* nearest_image(const Vec3& point) const;
 
