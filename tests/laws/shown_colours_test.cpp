@@ -133,6 +133,15 @@ void check_colours(const World& world, const ShownCase& one) {
 
 /// What is known to be off, and why.
 ShownCase case_of(const std::string& name) {
+    // Outlines of facets are chords, and parts of facets are fitted one by one: with twice as many facets
+    // along each edge, or four times, none of these pixels is left.
+    if (name == "lenses/telescopes") return {name, {}, 3, 0};  // the mirror's hole
+    if (name == "lenses/anamorphic") return {name, {}, 1, 0};
+    if (name == "patches/teapot") return {name, {}, 1, 1};
+    if (name == "patches/nurbs") return {name, {}, 1, 1};
+    // The mirror fills the film but for a pixel at its left and right edge: what the truth shows beside those
+    // is off the film.
+    if (name == "inverse/dome") return {name, {}, 0, 8};
     // Figures of the thesis that show what 5 x 5 facets do: outlines are polygons.
     if (name == "thesis/fig_7_4") return {name, {}, 1, 80};
     if (name == "thesis/fig_7_5") return {name, {}, 27, 27};
@@ -152,6 +161,10 @@ TEST_CASE("no pixel shows a colour that the truth does not show near it", "[laws
     expect_shown_colours({"closed", {160, 100, 320, 200}});
     expect_shown_colours({"paths/prism", {300, 40, 370, 160}});
     expect_shown_colours({"paths/mirror-balls", {180, 150, 300, 250}});
+    // A body wound inwards in a mirror ball, and corners of triangles.
+    expect_shown_colours({"gltf/room", {262, 206, 302, 246}});
+    expect_shown_colours({"patches/nurbs", {334, 223, 354, 243}});
+    expect_shown_colours({"patches/nurbs", {273, 79, 293, 99}});  // a ring in a vase
     expect_shown_colours(
         {"paths/under-water", {144, 244, 168, 268}});  // the pool's corner, from below the water
 }
@@ -170,10 +183,14 @@ TEST_CASE("the count finds facets that are too coarse", "[laws][law]") {
 }
 
 TEST_CASE("nor does any shipped scene, through any camera, at its own settings", "[.long][laws][law]") {
-    for (const std::string folder : {"", "paths/", "cameras/", "thesis/"})
-        for (const auto& entry : std::filesystem::directory_iterator(source_dir() + "/scenes/" + folder))
-            if (entry.path().extension() == ".json")
-                expect_shown_colours(case_of(folder + entry.path().stem().string()));
+    const std::filesystem::path scenes(source_dir() + "/scenes");
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes))
+        if (entry.path().extension() == ".json")
+            names.push_back(std::filesystem::relative(entry.path(), scenes).replace_extension().string());
+    std::sort(names.begin(), names.end());
+    REQUIRE(names.size() > 70);
+    for (const std::string& name : names) expect_shown_colours(case_of(name));
     for (const SceneExample& example : scene_examples())
         check_colours(*world_of_text(example.json), case_of(example.name));
 }

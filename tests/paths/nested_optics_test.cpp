@@ -159,3 +159,66 @@ TEST_CASE("layers and exact paths agree but at outlines, and a way that no layer
     CHECK(inside > 100);
     CHECK(outside > 1000);
 }
+
+namespace {
+
+/// A ball whose facets are wound the other way, with the ball's own normals: its volume is negative.
+SurfaceGrid wound_back(SurfaceGrid grid) {
+    for (std::size_t f = 0; f < grid.facets.size(); ++f) {
+        std::swap(grid.facets[f][1], grid.facets[f][2]);
+        std::swap(grid.facet_uv[f][1], grid.facet_uv[f][2]);
+    }
+    return grid;
+}
+
+}  // namespace
+
+TEST_CASE("which side of a body is outside is its volume's sign; what bounds none has no outside",
+          "[paths][law]") {
+    Stage stage;
+    stage.add_ball({2, 1, -3}, 0.5, mirror_of());
+    const SurfaceGrid ball = make_grid(stage.surface(0), 8);
+    CHECK(body_orientation(ball) == 1);
+    CHECK(body_orientation(wound_back(ball)) == -1);
+    SurfaceGrid open = ball;
+    open.facets.pop_back();
+    CHECK(body_orientation(open) == 0);
+    SurfaceGrid turned = ball;
+    std::swap(turned.facets[5][1], turned.facets[5][2]);
+    CHECK(body_orientation(turned) == 0);
+}
+
+TEST_CASE("a body is seen in a mirror from outside, however its facets are wound, with no hole in its image",
+          "[paths][law]") {
+    std::array<std::size_t, 2> covered{};
+    for (const bool back : {false, true}) {
+        Layered layered;
+        layered.stage.add_ball({-0.75, 0.1, 0}, 0.8, mirror_of());
+        layered.stage.add_ball({1, -0.2, 0.3}, 0.65, mirror_of());
+        layered.finish({0.35, 0.5, 3}, 16);
+        if (back) layered.grids[0] = wound_back(layered.grids[0]);
+        NestedOptics seen = layered.seen_in(1);
+        const Shown shown = compare(layered, seen, 1, 2);
+        REQUIRE(seen.all().size() == 1);
+        CHECK(shown.any > 300);
+        CHECK(shown.other * 50 <= shown.any);  // outlines of chords
+        // What covers a place is the near side: from inside no ray comes to it.
+        for (int y = 0; y < 600; y += 2)
+            for (int x = 0; x < 600; x += 2) {
+                const auto there = seen.at({x + 0.5, y + 0.5});
+                if (!there) continue;
+                ++covered[back];
+                const NestedOptic& one = *seen.all()[there->optic];
+                const IdTriple& corner = one.grid().facets[there->facet.facet];
+                const auto ray =
+                    chain_ray(mirror_chain(layered.layers, one.chain()),
+                              layered.layers.camera.point(Vec3(x + 0.5, y + 0.5, 1)) - layered.layers.eye);
+                REQUIRE(ray);
+                Vec3 out(0);
+                for (const Id c : corner) out += one.grid().corner_normal[c];
+                CHECK(dot(ray->ray.direction, out) < 0.3 * length(out));
+            }
+    }
+    CHECK(covered[0] > 300);
+    CHECK(covered[0] == covered[1]);
+}

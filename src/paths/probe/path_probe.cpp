@@ -58,11 +58,15 @@ double spread(const Vec3& u, const Vec3& a, const Vec3& b) {
     return std::fabs(triple(u, a - u, b - u));
 }
 
-/// A place beside this one on the same face; `axis` 0: u, 1: v.
+/// A place beside this one on the same face; `axis` 0: u, 1: v. In the corner of a triangle that lies farthest
+/// along the other axis there is room along its longest side alone.
 Place beside(const Surface& surface, const Place& place, int axis) {
     Vec2 uv = place.uv;
-    const double room = surface.domain(place.face) == FaceDomain::kTriangle ? 1 - uv.x - uv.y : 1 - uv[axis];
-    uv[axis] += room > kStep ? kStep : -kStep;
+    const bool is_triangle = surface.domain(place.face) == FaceDomain::kTriangle;
+    const double room = is_triangle ? 1 - uv.x - uv.y : 1 - uv[axis];
+    const bool goes_on = room > kStep, is_cornered = is_triangle && !goes_on && uv[axis] < kStep;
+    uv[axis] += goes_on || is_cornered ? kStep : -kStep;
+    if (is_cornered) uv[1 - axis] -= kStep;
     const SurfacePoint at = surface.eval_first_order(place.face, uv);
     return {place.face, uv, at.position, at.normal};
 }
@@ -191,6 +195,11 @@ void set_ray_scale(const ProbeContext& context, PathProbe& probe) {
     const double head_on =
         length(cross(side[0].place.point - probe.place.point, side[1].place.point - probe.place.point)) /
         (eye * eye);
+    // Where a face is drawn together to a point, steps on it lead nowhere.
+    if (!(head_on > 0)) {
+        if (!kept) probe.beside.clear();
+        return;
+    }
     const Vec3 v = normalize_or_zero(probe.incident);
     const double before =
         context.camera.parallel
