@@ -56,17 +56,20 @@ TEST_CASE("a bad scene on standard input is told as such", "[cli][streams][bad-i
     CHECK(run.err.find("standard input: /meshes/0/primitive/radius") != std::string::npos);
 }
 
-TEST_CASE("more facets than samples: trace is advised, and fewer facets where there can be fewer",
-          "[cli][streams]") {
+TEST_CASE(
+    "more facets than pixels, whatever their samples: trace is advised, and fewer facets where there can be "
+    "fewer",
+    "[cli][streams]") {
     const std::string folder = scratch_dir("cli_streams_facets");
     const std::string scene = write_file(folder, "room.json", small_scene());
     const std::string render = "render " + scene + " -n 128 -o " + folder + "/a.exr --size ";
-    const std::string advice = "samples: trace is exact and takes less time", fewer = "; with -n ";
+    const std::string advice = "pixels: trace is exact and takes less time", fewer = "; with -n ";
     const std::string few_pixels = run_trilens(render + "4x4").err,
                       pixels = run_trilens(render + "64x48").err;
     CHECK(few_pixels.find(advice) != std::string::npos);
     CHECK(few_pixels.find(fewer) == std::string::npos);
     CHECK(pixels.find(advice + fewer) != std::string::npos);
+    CHECK(run_trilens(render + "64x48 --spp 8").err.find(advice + fewer) != std::string::npos);
 }
 
 TEST_CASE("--quiet says errors only; -v says versions, what was read and the stages with seconds",

@@ -10,8 +10,10 @@
 #include "render/frame/camera_rays.h"
 #include "render/marks/marks.h"
 #include "render/picture/channels.h"
+#include "render/picture/count_pixels.h"
 #include "render/picture/fragments.h"
 #include "render/picture/rough_light.h"
+#include "render/picture/row_shares.h"
 #include "render/picture/sample_colour.h"
 
 namespace trilens {
@@ -28,18 +30,6 @@ constexpr std::size_t kPixelsPerTask = 256, kColoursPerTask = 1024;
 constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 // Of a drawing, until its pixels are shaded; then the last of them are taken.
 constexpr double kShadingShare = 0.999;
-
-/// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
-bool lacks_ray(const World& world, const SampleViews& views, const SampleView& view) {
-    if (view.optic == kNone) return false;
-    const Optic& optic = world.optics[view.optic];
-    const RenderSettings& settings = world.scene.render;
-    const Incidence& incidence = views.on_optic(view).incidence;
-    if (optic.mirror) return settings.reflect && !views.find(view, Path::kReflect);
-    return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
-           !reflects_totally(interface_of(world, view.optic, views.around_of(view), incidence.front),
-                             incidence.cosine);
-}
 
 /// Whether light is gathered over what a sample stands for, however many a pixel has.
 bool gathers_light(const World& world) {
@@ -168,6 +158,13 @@ struct BandSource {
     bool by_fragments = false;  // see makes_fragments()
     bool bounds_coverage = false;
     const MarkPainter* marks = nullptr;
+
+    /// The same for a band that is that share of the picture's work.
+    BandSource of_share(double share, const SampleGrid& grid) const {
+        BandSource own = *this;
+        own.pixels.shaded.of_pixel = share / static_cast<double>(grid.pixels());
+        return own;
+    }
 };
 
 void view_band(const BandSource& source, Band& band) {
@@ -231,47 +228,6 @@ void paint_marks(const BandSource& source, const Band& band, std::size_t first,
     }
 }
 
-void count(const World& world, const SampleViews& middle, const SampleView& view, LayerStatistics& counts) {
-    if (view.optic == kNone) return;
-    const OpticView& on_optic = middle.on_optic(view);
-    ++counts.optic_pixels;
-    counts.pixels_without_ray += lacks_ray(world, middle, view);
-    counts.traced_pixels += view.traced;
-    counts.layered_pixels += !view.traced && view.nested > 0;
-    counts.subdivided_pixels += !view.traced && view.level > 0;
-    counts.faint_light = std::max(counts.faint_light, of_worst_colour(on_optic.cut.faint));
-    counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);
-    counts.certified_pixels += on_optic.bound > 0;
-    counts.certified_error = std::max(counts.certified_error, on_optic.bound);
-    counts.deep_light = std::max(counts.deep_light, of_worst_colour(on_optic.cut.too_deep));
-    const double deep = of_worst_colour(on_optic.deep);
-    counts.deep_pixels += deep > kLeastWeight;
-    counts.deep_sum += deep;
-}
-
-void merge(const LayerStatistics& from, LayerStatistics& to) {
-    to.optic_pixels += from.optic_pixels;
-    to.pixels_without_ray += from.pixels_without_ray;
-    to.traced_pixels += from.traced_pixels;
-    to.layered_pixels += from.layered_pixels;
-    to.subdivided_pixels += from.subdivided_pixels;
-    to.faint_light = std::max(to.faint_light, from.faint_light);
-    to.predicted_error = std::max(to.predicted_error, from.predicted_error);
-    to.certified_pixels += from.certified_pixels;
-    to.certified_error = std::max(to.certified_error, from.certified_error);
-    to.unbounded_pixels += from.unbounded_pixels;
-    to.outline_pixels += from.outline_pixels;
-    to.deep_light = std::max(to.deep_light, from.deep_light);
-    to.deep_pixels += from.deep_pixels;
-    to.deep_sum += from.deep_sum;
-    to.fragment_pixels += from.fragment_pixels;
-    to.fragments += from.fragments;
-    to.rays_by_sample += from.rays_by_sample;
-    to.pixels_shaded_by_sample += from.pixels_shaded_by_sample;
-    to.projected_facets = std::max(to.projected_facets, from.projected_facets);
-    to.crowded_out = std::max(to.crowded_out, from.crowded_out);
-}
-
 /// Its pixels, from that `first` of the canvas on.
 LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t first, Canvas& canvas) {
     const World& world = source.pixels.world;
@@ -308,13 +264,57 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
             for (std::size_t p = start; p < end; ++p) {
                 canvas.put_centre(world, middle, middle.samples[p], first + p);
                 canvas.put_fragment_count(band.fragment_count(p), first + p);
-                count(world, middle, middle.samples[p], own);
+                count_pixel(world, middle, middle.samples[p], own);
             }
         }
         const std::lock_guard lock(mutex);
-        merge(own, counts);
+        merge_counts(own, counts);
     });
     return counts;
+}
+
+/// Leaves that the viewer has worked out.
+std::size_t count_leaves(const World& world, const Viewer& viewer) {
+    std::size_t leaves = 0;
+    for (std::size_t i = 0; viewer.has_facets() && i < world.optics.size(); ++i)
+        leaves += viewer.paths(i).leaves.size();
+    return leaves;
+}
+
+/// Seconds that a strip of rows takes to view and to shade, but for what is worked out with it once and for
+/// all.
+double time_strip(const BandSource& source, const SampleGrid& strip) {
+    const auto& [world, viewer, filter, progress, shaded] = source.pixels;
+    Band band;
+    band.grid = strip;
+    const std::size_t known = count_leaves(world, viewer);
+    Stopwatch watch;
+    view_band(source, band);
+    if (count_leaves(world, viewer) > 2 * known) {
+        watch = {};
+        view_band(source, band);
+    }
+    std::vector<SampleColour> colours(strip.pixels());
+    parallel_for(colours.size(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
+        source.pixels.progress.stop_if_cancelled();
+        find_colours(source, band, from, std::span(colours).subspan(from, to - from));
+    });
+    return watch.seconds();
+}
+
+/// What share of the work rows are: measured where somebody is told how much is done, and by facets, which
+/// take up to a hundred times as long in some rows as in others.
+RowShares row_shares(const BandSource& source, const LayerRequest& request, int side) {
+    const Progress& told = source.pixels.progress;
+    if (!told.report || !source.pixels.viewer.has_facets()) return {request.y0, request.y1};
+    Progress silent;
+    silent.cancel = told.cancel;
+    const BandSource quiet{{source.pixels.world, source.pixels.viewer, source.pixels.filter, silent, {}},
+                           source.by_fragments};
+    return RowShares::measured(request.y0, request.y1, [&](int from, int to) {
+        told.stop_if_cancelled();
+        return time_strip(quiet, {request.x0, from, request.x1, to, side});
+    });
 }
 
 }  // namespace
@@ -346,24 +346,31 @@ Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& reques
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
     const Progress shading = progress.part(0, kShadingShare);
-    LoopProgress shaded(shading, static_cast<double>(width) * height);
-    const BandSource source{
-        {world, viewer, filter, progress, shaded}, by_fragments, canvases[0].wants_coverage(), output.marks};
+    LoopProgress shaded(shading, 1);
+    const BandSource source{{world, viewer, filter, progress, {&shaded}},
+                            by_fragments,
+                            canvases[0].wants_coverage(),
+                            output.marks};
+    const RowShares shares = row_shares(source, request, side);
+    const auto source_of = [&](const SampleGrid& grid) {
+        return source.of_share(shares.of(grid.y0, grid.y1), grid);
+    };
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {
         progress.stop_if_cancelled();
         const int y = request.y0 + static_cast<int>(item) * rows;
         band[slot].grid = {request.x0, y, request.x1, std::min(y + rows, request.y1), side};
-        view_band(source, band[slot]);
+        view_band(source_of(band[slot].grid), band[slot]);
+        if (output.crowded_out) output.crowded_out(band[slot].middle().crowded_out);
     };
     stages.work = [&](std::size_t item, std::size_t slot) {
         const std::size_t above = sink ? 0 : item * static_cast<std::size_t>(rows);
-        band[slot].counts =
-            put_band(source, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
+        band[slot].counts = put_band(source_of(band[slot].grid), band[slot],
+                                     above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
     };
     stages.end = [&](std::size_t, std::size_t slot) {
-        merge(band[slot].counts, counts);
+        merge_counts(band[slot].counts, counts);
         if (sink) sink->add(canvases[slot].image().channels, band[slot].grid.height());
     };
     run_pipeline(bands, slots, stages);

@@ -63,13 +63,23 @@ struct FragmentCounts {
     std::size_t pixels_by_sample = 0;  // that have such rays
 };
 
+/// Where it is told that pixels are shaded.
+struct ShadedPixels {
+    LoopProgress* progress = nullptr;  // null: nobody is told
+    double of_pixel = 0;               // what a pixel counts there
+
+    void add(double pixels) const {
+        if (progress) progress->add(of_pixel * pixels);
+    }
+};
+
 /// What pixels are made of. What is made of them throws Interrupted soon after the progress is cancelled.
 struct PixelSource {
     const World& world;
     Viewer& viewer;
     const PixelFilter& filter;
     const Progress& progress;
-    LoopProgress& shaded;  // of the picture's pixels
+    ShadedPixels shaded = {};
 };
 
 /// The colours of all fragments in a window and the pixels around it that a filter reaches.
@@ -122,7 +132,7 @@ class FragmentColours {
     Viewer& viewer_;
     const PixelFilter& filter_;
     const Progress& progress_;
-    LoopProgress& progress_shaded_;
+    ShadedPixels progress_shaded_;
     double pixels_per_fragment_ = 0;
     SampleGrid grid_;  // in lattice order
     SampleViews centres_;

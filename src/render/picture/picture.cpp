@@ -59,34 +59,43 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
             statistics.unbounded_pixels));
 }
 
-/// What is drawn by another way than was asked for.
-void tell_crowded_out(const LayerStatistics& statistics, const Warn& warn) {
-    if (statistics.crowded_out > 0)
-        warn(fmt::format(
+/// Tells what is drawn by another way than was asked for, as soon as it is decided.
+class CrowdedOutTeller {
+  public:
+    explicit CrowdedOutTeller(const Warn& warn) : warn_(warn) {}
+    void operator()(std::size_t facets) {
+        if (!warn_ || facets <= told_) return;
+        told_ = facets;
+        warn_(fmt::format(
             "{} facets are traced, not projected: the paths over all would take more than {} MiB; "
             "fewer facets or a smaller maxDepth need less",
-            statistics.crowded_out, DivideParams().most_bytes >> 20));
-}
+            facets, DivideParams().most_bytes >> 20));
+    }
 
-/// Facets that a picture can hold without a word, and samples that one should have for projecting to pay.
-constexpr std::size_t kManyFacets = 65536, kSamplesPerFacet = 16;
+  private:
+    const Warn& warn_;
+    std::size_t told_ = 0;
+};
 
-/// What costs more than it gives, before it is done: with fewer samples than facets each facet's rays are
-/// followed for less than one sample, where tracing follows one ray for each.
+/// Facets that a picture can hold without a word, and pixels that one should have for projecting to pay.
+constexpr std::size_t kManyFacets = 65536, kPixelsPerFacet = 16;
+
+/// What costs more than it gives, before it is done: samples of a pixel that see one facet are shaded once,
+/// so with fewer pixels than facets each facet's rays are followed for less than one of them, where tracing
+/// follows one for each sample (docs/speed.md has the times).
 void advise_on_facets(const World& world, const PictureRequest& request, const LayerRequest& window,
                       const Warn& warn) {
     const std::size_t facets = facet_count(world, request.frame.resolution);
-    const auto side = static_cast<std::size_t>(world.scene.film.spp);
-    const std::size_t samples = static_cast<std::size_t>(window.x1 - window.x0) *
-                                static_cast<std::size_t>(window.y1 - window.y0) * side * side;
-    if (facets < kManyFacets || facets <= samples) return;
+    const std::size_t pixels =
+        static_cast<std::size_t>(window.x1 - window.x0) * static_cast<std::size_t>(window.y1 - window.y0);
+    if (facets < kManyFacets || facets <= pixels) return;
     const double of_one = static_cast<double>(std::max<std::size_t>(1, facet_count(world, 1))),
-                 wanted = static_cast<double>(samples / kSamplesPerFacet);
+                 wanted = static_cast<double>(pixels / kPixelsPerFacet);
     const double resolution = std::floor(std::sqrt(wanted / of_one));
     const std::string fewer = resolution < 1 ? ""
-                                             : fmt::format("; with -n {} a facet is shared by {} samples",
-                                                           resolution, kSamplesPerFacet);
-    warn(fmt::format("{} facets for {} samples: trace is exact and takes less time{}", facets, samples, fewer));
+                                             : fmt::format("; with -n {} a facet is shared by {} pixels",
+                                                           resolution, kPixelsPerFacet);
+    warn(fmt::format("{} facets for {} pixels: trace is exact and takes less time{}", facets, pixels, fewer));
 }
 
 /// Of the light on all optics: less is not told of.
@@ -323,9 +332,10 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     };
     const bool in_strips = sink || request.watch;
     const Stopwatch drawing;
-    picture.image = draw_layers(
-        world, *viewer, layers, after_gathering.part(share_of_marks, 1 - share_of_marks),
-        {&picture.statistics, in_strips ? &described : nullptr, marks.marks.empty() ? nullptr : &painter});
+    picture.image =
+        draw_layers(world, *viewer, layers, after_gathering.part(share_of_marks, 1 - share_of_marks),
+                    {&picture.statistics, in_strips ? &described : nullptr,
+                     marks.marks.empty() ? nullptr : &painter, CrowdedOutTeller(warn)});
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();
     picture.statistics.probes = probes_of(world, *viewer);
@@ -337,7 +347,6 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (warn) {
         tell(world, layers, picture.statistics, warn);
         tell_omissions(world, request.engine.engine, picture.statistics, warn);
-        tell_crowded_out(picture.statistics, warn);
         tell_marks(world, marks, warn);
     }
     if (request.engine.engine == Engine::kLimitTruth)

@@ -1,6 +1,7 @@
 // One picture of a scene, from the choice of engine to the finished image.
 #pragma once
 
+#include <functional>
 #include "base/image/image.h"
 #include "base/util/error.h"
 #include "render/engines/engine.h"
@@ -24,6 +25,8 @@ struct LayerOutput {
     LayerStatistics* statistics = nullptr;
     const StripSink* sink = nullptr;  // takes the pixels band by band
     const MarkPainter* marks = nullptr;
+    // Told after each band how many facets are traced for want of room by now, before the band is shaded.
+    std::function<void(std::size_t facets)> crowded_out = {};
 };
 
 /// Draws the window, which lies on the film and is not empty, band by band. Colours are the mean over the

@@ -1,0 +1,32 @@
+// How the work of a picture is spread over its rows, by timing some of them (stratified sampling).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace trilens {
+
+/// Shares of a picture's work, 1 in all.
+class RowShares {
+  public:
+    /// Seconds that the rows [from, to) take.
+    using TimeRows = std::function<double(int from, int to)>;
+
+    /// Rows [y0, y1), all alike; y0 < y1.
+    RowShares(int y0, int y1);
+
+    /// By few rows, spread over the picture: one in 32 at the most, and three of pictures that are done
+    /// before anybody asks how long they take. Between them shares are interpolated.
+    static RowShares measured(int y0, int y1, const TimeRows& time);
+
+    /// What share the rows [from, to) are, y0 <= from <= to <= y1.
+    double of(int from, int to) const {
+        return before_[static_cast<std::size_t>(to - y0_)] - before_[static_cast<std::size_t>(from - y0_)];
+    }
+
+  private:
+    int y0_ = 0;
+    std::vector<double> before_;  // per row, and one more: the share of those above
+};
+
+}  // namespace trilens
