@@ -10,7 +10,6 @@
 #include "render/frame/camera_rays.h"
 #include "render/marks/marks.h"
 #include "render/picture/channels.h"
-#include "render/picture/count_pixels.h"
 #include "render/picture/fragments.h"
 #include "render/picture/rough_light.h"
 #include "render/picture/row_shares.h"
