@@ -1,6 +1,6 @@
 // What progress says of a picture: the time left is right though rows differ by a factor of a hundred, being
 // told changes nothing, and what is decided is said at once.
-#include "render/picture/row_shares.h"
+#include "render/picture/picture_progress.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,8 +11,8 @@
 #include "render/marks/marks.h"
 #include "render/picture/channels.h"
 #include "render/picture/fragments.h"
+#include "render/picture/picture_progress.h"
 #include "render/picture/rough_light.h"
-#include "render/picture/row_shares.h"
 #include "render/picture/sample_colour.h"
 
 namespace trilens {

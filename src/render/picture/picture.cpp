@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <set>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -14,6 +13,7 @@
 #include "paths/trace/follow.h"
 #include "render/engines/engine.h"
 #include "render/marks/marks.h"
+#include "render/picture/picture_progress.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -214,78 +214,6 @@ void collect_strip(const std::vector<Channel>& channels, int first, int rows, Im
                 std::copy_n(strip.begin(), count, values.begin() + static_cast<std::ptrdiff_t>(from));
             },
             image.channels[i].values);
-}
-
-/// Of the job, where lights have caustics that are not known yet: while their beams are made, and gathered on
-/// what is seen.
-constexpr double kBeamsShare = 0.2, kGatheringShare = 0.3;
-/// Of the job, where there are many optics.
-constexpr double kOpticsShare = 0.3;
-constexpr std::size_t kOpticsTold = 8;
-/// Rows of a picture that say which faces are seen, at most, and how far apart they are, at least; what
-/// others show beside is gathered while they are drawn.
-constexpr int kRowsLookedAt = 16, kRowsApart = 12;
-
-/// The sides of objects' faces that rows of the window show, each once.
-std::vector<ReceiverSide> seen_faces(const ReceiverFaces& faces, Viewer& viewer, const LayerRequest& window,
-                                     const Progress& progress) {
-    std::set<ReceiverSide> seen;
-    const auto add = [&](const Hit& hit, const Ray& ray) {
-        if (!hit.seen()) return;
-        const ReceiverSide side = faces.side_of(hit.triangle, -ray.direction);
-        if (side.face != kNone) seen.insert(side);
-    };
-    SampleViews views;
-    const int height = window.y1 - window.y0, rows = std::min(1 + height / kRowsApart, kRowsLookedAt);
-    for (int i = 0; i < rows; ++i) {
-        progress.stop_if_cancelled();
-        const int y = window.y0 + (2 * i + 1) * height / (2 * rows);
-        viewer.view({window.x0, y, window.x1, y + 1, 1}, views);
-        for (const SampleView& view : views.samples)
-            if (view.optic == kNone) add(view.hit, view.ray);
-        for (const PathEnd& end : views.ends) add(end.hit, end.ray);
-    }
-    return {seen.begin(), seen.end()};
-}
-
-/// Many optics take a while to make, of which the user is told; returns the rest of the progress.
-Progress prepare_many_optics(const World& world, const PictureRequest& request, const Progress& progress) {
-    if (world.optics.size() < kOpticsTold) return progress;
-    const Engine engine = request.engine.engine;
-    OpticNeeds needs;
-    needs.resolution = request.frame.resolution;
-    needs.facets = engine != Engine::kLimitTruth;
-    needs.traced = engine == Engine::kFacetsTruth;
-    needs.projected = needs.facets && !needs.traced;
-    needs.exact_rays = follows_paths(engine);
-    prepare_optics(world, needs, progress.part(0, kOpticsShare));
-    progress.begin_stage("");
-    return progress.part(kOpticsShare, 1 - kOpticsShare);
-}
-
-/// Makes the beams of lights with caustics; returns the rest of the progress.
-Progress prepare_caustics(const World& world, bool exact, const Progress& progress) {
-    if (!has_caustics(world) || known_caustic_lights(world, exact)) return progress;
-    caustic_lights(world, exact, progress.part(0, kBeamsShare));
-    progress.begin_stage("");
-    return progress.part(kBeamsShare, 1 - kBeamsShare);
-}
-
-/// Gathers their light on what is seen, where pictures do not ask for exact rays; returns the rest of the
-/// progress.
-Progress gather_seen(const World& world, Viewer& viewer, const LayerRequest& window,
-                     const Progress& progress) {
-    if (!has_caustics(world) || !viewer.has_facets()) return progress;
-    const CausticLights& lights = caustic_lights(world, false);
-    std::vector<ReceiverSide> faces = seen_faces(*lights.faces, viewer, window, progress);
-    const std::vector<const BeamLight*> all = lights.all();
-    std::erase_if(faces, [&](const ReceiverSide& face) {
-        return std::ranges::all_of(all, [&](const BeamLight* light) { return light->is_gathered(face); });
-    });
-    if (faces.empty()) return progress;
-    gather_light(all, faces, progress.part(0, kGatheringShare));
-    progress.begin_stage("");
-    return progress.part(kGatheringShare, 1 - kGatheringShare);
 }
 
 }  // namespace

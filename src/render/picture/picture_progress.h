@@ -1,8 +1,14 @@
-// How the work of a picture is spread over its rows, by timing some of them (stratified sampling).
+// What share of a picture's job its parts are: what is made before it is drawn, and its rows, by timing some
+// of them (stratified sampling).
 #pragma once
 
 #include <functional>
 #include <vector>
+
+#include "base/util/error.h"
+#include "render/engines/engine.h"
+#include "render/frame/request.h"
+#include "render/world/world.h"
 
 namespace trilens {
 
@@ -28,5 +34,16 @@ class RowShares {
     int y0_ = 0;
     std::vector<double> before_;  // per row, and one more: the share of those above
 };
+
+/// Many optics take a while to make, of which the user is told; returns the rest of the progress.
+Progress prepare_many_optics(const World& world, const PictureRequest& request, const Progress& progress);
+
+/// Makes the beams of lights with caustics; returns the rest of the progress.
+Progress prepare_caustics(const World& world, bool exact, const Progress& progress);
+
+/// Gathers their light on what is seen, where pictures do not ask for exact rays; returns the rest of the
+/// progress.
+Progress gather_seen(const World& world, Viewer& viewer, const LayerRequest& window,
+                     const Progress& progress);
 
 }  // namespace trilens
