@@ -32,6 +32,8 @@ const std::map<std::string, std::string> kElsewhere{
     {"remove_unfinished_files", "of no data"},
     {"unit_across", "of any vector; it is none of one without length"},
     {"triple", "of any vectors"},
+    {"cross", "of any vectors"},
+    {"body_orientation", "of grids that make_surface_grid made"},
     {"names_of", "of an enumeration"},
     {"append_facets", "of grids that make_surface_grid made"},
     {"make_linear_view", "make_camera, of descriptions that are no data"},

@@ -78,8 +78,8 @@ const char* const kCamerasExample = R"json({
   ],
   "lights": [
     { "type": "rectangle", "name": "window", "position": [0, 3.9995, 1], "direction": [0, -1, 0], "size": [2.4, 2], "intensity": 7.5, "color": [1, 0.95, 0.85],
-      "samples": 16, "shadows": true },
-    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 32, "shadows": true }
+      "samples": 9, "shadows": true },
+    { "type": "ambient", "color": [0.26, 0.27, 0.3], "distance": 1, "samples": 12, "shadows": true }
   ]
 }
 )json";
