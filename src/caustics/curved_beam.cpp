@@ -41,8 +41,14 @@ double bulge_on_plane(const std::array<Vec2, 6>& at) {
 }
 
 std::array<Vec3, 6> CurvedBeam::lights() const {
+    const auto& end = corners.end;
+    const double area = 0.5 * std::fabs(cross(end[1]->place - end[0]->place, end[2]->place - end[0]->place));
+    const double per_film = corners.measure > 0 ? area / corners.measure : 0;
     std::array<Vec3, 6> light;
-    for (std::size_t k = 0; k < 3; ++k) light[k] = corners.end[k]->light, light[3 + k] = middle[k]->light;
+    for (std::size_t k = 0; k < 3; ++k) {
+        light[k] = end[k]->film * per_film * end[k]->light;
+        light[3 + k] = middle[k]->film * per_film * middle[k]->light;
+    }
     return light;
 }
 

@@ -29,6 +29,8 @@ struct CurvedBeam {
     /// plane lies so askew that a quadratic says nothing.
     std::optional<std::array<Vec2, 6>> fall(const ReceiverPlane& plane) const;
 
+    /// Of the ends and then of the middles: times how much more of the light's film a unit of places is there
+    /// than in the beam's mean, since pieces are equal in places.
     std::array<Vec3, 6> lights() const;
 
     /// Calls use(corners, fallen) for those of its sides x sides flat pieces that come to the square [-half,

@@ -49,6 +49,39 @@ TEST_CASE("a flat mirror's light is that of the light's image behind it", "[laws
     CHECK(lit.light().irradiance(on_floor(4.5, 0)) == Vec3(0));
 }
 
+TEST_CASE("a wide mirror's light is that of the light's image, from end to end of every beam",
+          "[laws][law][caustics]") {
+    // Seen from the lamp the mirror is so wide that a beam's film is unlike over its part of the window.
+    const LitWorld lit(lit_world(R"({"name": "mirror", "role": "optic", "material": "mirror", "resolution": 4,
+        "points": [[-2,0.2,4],[-2,0.2,-4],[-2,3,-4],[-2,3,4]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3],
+        "subdivisionScheme": "bilinear"})",
+                                 kLamp));
+    const auto expected_at = [](const Vec3& point) {
+        const Vec3 way = Vec3(-4, 4, 3) - point;
+        return 10 * way.y / std::pow(length(way), 3);
+    };
+    constexpr double kWide = 0.1;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> place(-1, 1);
+    double square = 0;
+    constexpr int kCount = 200;
+    for (int i = 0; i < kCount; ++i) {
+        Receiver there = on_floor(0.1 + 0.5 * place(random), -1 + 0.5 * place(random));
+        CHECK(lit.light().exact_irradiance(there).y == Approx(expected_at(there.point)).epsilon(1e-7));
+        there.sides = {Vec3(kWide, 0, 0), Vec3(0, 0, -kWide)};
+        double expected = 0;  // over the footprint, by Simpson's rule
+        for (const int u : {-1, 0, 1})
+            for (const int v : {-1, 0, 1})
+                expected += (u == 0 ? 4 : 1) * (v == 0 ? 4 : 1) / 36.0 *
+                            expected_at(there.point + 0.5 * kWide * Vec3(u, 0, v));
+        const double off = lit.light().irradiance(there).y / expected - 1;
+        CAPTURE(there.point.x, there.point.z, expected);
+        CHECK(std::fabs(off) < 0.008);
+        square += off * off;
+    }
+    CHECK(std::sqrt(square / kCount) < 0.0025);
+}
+
 TEST_CASE("a mirror ball sends light by as many paths as project finds, with its derivative",
           "[laws][law][caustics]") {
     const LitWorld lit(lit_world(R"({"name": "ball", "role": "optic", "material": "mirror", "resolution": 8,
