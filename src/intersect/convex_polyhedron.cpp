@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 #include "base/raymesh/face_neighbours.h"
+#include "intersect/patch_tree.h"
 
 namespace trilens {
 namespace {
@@ -17,8 +19,25 @@ constexpr double kFaceRounding = 1e-13;  // of the size: so far corners of other
 /// moves a plane that is crossed: shares of the body's size and of its distance.
 constexpr double kUndecided = 1e-11, kCrossingRounding = 1e-14;
 
-struct PlaneCrossing {
-    double low = 0, high = 0;
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
+/// Where a ray crosses the last of some planes. Each crossing is known to within rounding.
+struct LastCrossing {
+    double low = -kNowhere, high = -kNowhere;  // it lies between these
+    std::size_t plane = 0;                     // the last by rounding
+    double t = -kNowhere, off = 0;             // of that plane
+    double others_high = -kNowhere;            // no other plane is crossed behind this
+
+    void add(double at, double rounding, std::size_t number) {
+        low = std::max(low, at - rounding), high = std::max(high, at + rounding);
+        if (!(at > t)) {
+            others_high = std::max(others_high, at + rounding);
+            return;
+        }
+        others_high = std::max(others_high, t + off);
+        plane = number, t = at, off = rounding;
+    }
+    bool is_sure() const { return others_high < t - off; }
 };
 
 std::vector<Vec3> corners_of(const Surface& surface, Id face) {
@@ -66,50 +85,114 @@ std::optional<ConvexPolyhedron> ConvexPolyhedron::of(const Surface& surface) {
     std::size_t fronts_in = 0;
     for (Id face = 0; face < count; ++face) {
         const SurfacePoint at = surface.eval_first_order(face, Vec2(0.25));
-        Plane plane{normalize_or_zero(at.normal), dot(at.position - body.middle_, at.normal)};
+        Plane plane{normalize_or_zero(at.normal), dot(at.position - body.middle_, at.normal), {}};
         if (plane.place < 0) {
-            plane = {-plane.normal, -plane.place};
+            plane = {-plane.normal, -plane.place, {}};
             ++fronts_in;
         }
         if (!(plane.place > kFaceRounding * body.size_)) return std::nullopt;
         for (const Vec3& corner : corners)
             if (!(dot(corner - body.middle_, plane.normal) <= plane.place + kFaceRounding * body.size_))
                 return std::nullopt;
-        body.planes_.push_back(plane);
+        body.add_face(surface, face, plane);
     }
     if (fronts_in != 0 && fronts_in != count) return std::nullopt;
     return body;
 }
 
-/// Where the ray crosses each plane is known to within rounding, so where it enters the body, the last of the
-/// planes that it crosses inwards, and where it leaves it are intervals.
-std::optional<bool> ConvexPolyhedron::meets(const Ray& ray, double t_min, double t_max) const {
+/// Several faces may lie in one plane.
+void ConvexPolyhedron::add_face(const Surface& surface, Id face, const Plane& in) {
+    const std::vector<Vec3> corners = corners_of(surface, face);
+    const auto holds = [&](const Plane& plane) {
+        return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
+            return std::fabs(dot(corner - middle_, plane.normal) - plane.place) <= kFaceRounding * size_;
+        });
+    };
+    auto plane = std::find_if(planes_.begin(), planes_.end(), holds);
+    if (plane == planes_.end()) plane = planes_.insert(plane, in);
+    if (const std::optional<FlatFace> flat = FlatFace::of(surface, face)) plane->faces.push_back({face, *flat});
+}
+
+/// A ray's way through the body: where it has crossed the last plane inwards, and, with the sign of t turned,
+/// the first outwards.
+struct ConvexPolyhedron::Clipped {
+    LastCrossing enters, leaves;
+    bool is_beside = false;  // it runs along a plane, before it
+    bool is_known = true;    // it runs along none so near that rounding tells the side
+
+    double leaves_low() const { return -leaves.high; }
+    double leaves_high() const { return -leaves.low; }
+    bool surely_misses() const { return is_beside || enters.low > leaves_high(); }
+    bool surely_meets() const { return is_known && enters.high < leaves_low(); }
+};
+
+ConvexPolyhedron::Clipped ConvexPolyhedron::clip(const Ray& ray) const {
     const Vec3 from = ray.origin - middle_;
     const double room = kUndecided * (size_ + length(from)), slack = room / length(ray.direction);
     const double rounding = kCrossingRounding * (size_ + length(from));
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    PlaneCrossing enters{-kInfinity, -kInfinity}, leaves{kInfinity, kInfinity};
-    for (const Plane& plane : planes_) {
+    Clipped clipped;
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+        const Plane& plane = planes_[i];
         const double before = plane.place - dot(plane.normal, from), speed = dot(plane.normal, ray.direction);
         if (speed == 0) {
             if (before > room) continue;
-            return before < -room ? std::optional(false) : std::nullopt;
+            clipped.is_beside = before < -room;
+            clipped.is_known = false;
+            break;
         }
         const double t = before / speed, off = slack + rounding / std::fabs(speed);
         if (speed < 0)
-            enters = {std::max(enters.low, t - off), std::max(enters.high, t + off)};
+            clipped.enters.add(t, off, i);
         else
-            leaves = {std::min(leaves.low, t - off), std::min(leaves.high, t + off)};
+            clipped.leaves.add(-t, off, i);
     }
-    if (enters.low > leaves.high) return false;
-    if (!(enters.high < leaves.low)) return std::nullopt;
+    return clipped;
+}
+
+std::optional<bool> ConvexPolyhedron::meets(const Ray& ray, double t_min, double t_max) const {
+    const Clipped clipped = clip(ray);
+    if (clipped.surely_misses() && (clipped.is_beside || clipped.is_known)) return false;
+    if (!clipped.surely_meets()) return std::nullopt;
     bool is_met = false;
-    for (const PlaneCrossing& crossing : {enters, leaves}) {
-        const bool is_between = crossing.low > t_min && crossing.high < t_max;
-        if (!is_between && !(crossing.high < t_min || crossing.low > t_max)) return std::nullopt;
+    for (const auto& [low, high] : {std::pair(clipped.enters.low, clipped.enters.high),
+                                    std::pair(clipped.leaves_low(), clipped.leaves_high())}) {
+        const bool is_between = low > t_min && high < t_max;
+        if (!is_between && !(high < t_min || low > t_max)) return std::nullopt;
         is_met = is_met || is_between;
     }
     return is_met;
+}
+
+bool ConvexPolyhedron::find_first_hit(const Ray& ray, double t_min, std::optional<SurfaceHit>& hit) const {
+    const Clipped clipped = clip(ray);
+    hit.reset();
+    if (clipped.surely_misses() && (clipped.is_beside || clipped.is_known)) return true;
+    if (!clipped.surely_meets()) return false;
+    if (clipped.enters.low > t_min)
+        return clipped.enters.is_sure() && find_hit(ray, planes_[clipped.enters.plane], clipped.enters.t, hit);
+    if (!(clipped.enters.high < t_min)) return false;
+    if (clipped.leaves_low() > t_min)
+        return clipped.leaves.is_sure() &&
+               find_hit(ray, planes_[clipped.leaves.plane], -clipped.leaves.t, hit);
+    return clipped.leaves_high() < t_min;
+}
+
+bool ConvexPolyhedron::find_hit(const Ray& ray, const Plane& plane, double t,
+                                std::optional<SurfaceHit>& hit) const {
+    const Vec3 place = ray.origin + t * ray.direction;
+    for (const Face& face : plane.faces) {
+        const std::optional<Vec2> uv = face.flat.parameters_of(place);
+        if (!uv) continue;
+        SurfaceHit found{face.number, *uv, 0, face.flat.point(*uv)};
+        const Vec3 way = found.point.position - ray.origin;
+        const Vec3 unit = normalize_or_zero(ray.direction);
+        found.t = dot(unit, way) / dot(unit, ray.direction);
+        const double far = length(found.point.position) + length(ray.origin);
+        if (!(length(way - found.t * ray.direction) <= kSurfaceResidual * far)) return false;
+        hit = found;
+        return true;
+    }
+    return false;
 }
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-// Segments against a convex polyhedron: clipped by its faces' planes (Cyrus and Beck, Generalized
+// Rays against a convex polyhedron: clipped by its faces' planes (Cyrus and Beck, Generalized
 // two-dimensional line clipping, 1978).
 #pragma once
 
@@ -7,6 +7,7 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
+#include "intersect/flat_face.h"
 
 namespace trilens {
 
@@ -20,11 +21,25 @@ class ConvexPolyhedron {
     /// rounding may tell either: at an end of the stretch, or where it grazes an edge.
     std::optional<bool> meets(const Ray& ray, double t_min, double t_max) const;
 
+    /// The first hit with t > t_min; false where rounding may tell otherwise, near an edge too, or the faces
+    /// are no FlatFace: nothing is known then.
+    bool find_first_hit(const Ray& ray, double t_min, std::optional<SurfaceHit>& hit) const;
+
   private:
-    struct Plane {
-        Vec3 normal{0};    // unit, outward
-        double place = 0;  // along it, from the middle
+    struct Face {
+        Id number = kNone;
+        FlatFace flat;
     };
+    struct Plane {
+        Vec3 normal{0};           // unit, outward
+        double place = 0;         // along it, from the middle
+        std::vector<Face> faces;  // that lie in it; none where they are not known in closed form
+    };
+    struct Clipped;
+    void add_face(const Surface& surface, Id face, const Plane& in);
+    Clipped clip(const Ray& ray) const;
+    bool find_hit(const Ray& ray, const Plane& plane, double t, std::optional<SurfaceHit>& hit) const;
+
     std::vector<Plane> planes_;
     Vec3 middle_{0};
     double size_ = 0;  // farthest corner from the middle

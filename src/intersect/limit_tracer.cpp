@@ -324,10 +324,11 @@ LimitTracer& LimitTracer::operator=(LimitTracer&&) noexcept = default;
 std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) const {
     const Surface& surface = data_->surface;
     if (surface.has_closed_form()) return surface.intersect(ray, t_min);
+    std::optional<SurfaceHit> first;
+    if (data_->polyhedron && data_->polyhedron->find_first_hit(ray, t_min, first)) return first;
     const std::optional<RayFrame> frame = make_ray_frame(ray);
     if (!frame) return std::nullopt;
 
-    std::optional<SurfaceHit> first;
     double first_until = kUnbounded;  // what is met no farther away may come before it
     double tried = -kUnbounded;
     for (const Reach reach : {Reach::kToFirst, Reach::kAll}) {

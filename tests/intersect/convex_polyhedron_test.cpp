@@ -139,6 +139,56 @@ TEST_CASE("a convex polyhedron is met between two points where the first hit say
     CHECK(grazing < 30000);  // most of them aim at edges
 }
 
+TEST_CASE("a convex polyhedron's first hit in closed form is the one that is solved for", "[intersect][law]") {
+    int met = 0, missed = 0, undecided = 0;
+    double worst = 0;
+    for (int body = 0; body < 40; ++body) {
+        const auto made = [&](bool tells) {
+            Draw draw(static_cast<std::uint64_t>(350 + body));
+            return body % 4 == 3 ? random_tetrahedron(draw, tells) : random_box(draw, body % 2 == 1, tells);
+        };
+        const FlatFaces told = made(true), untold = made(false);
+        const ConvexPolyhedron polyhedron = *ConvexPolyhedron::of(told);
+        const LimitTracer solved(untold, grid_of(untold, 2));
+        Draw draw(static_cast<std::uint64_t>(2000 + body));
+        for (int i = 0; i < 1500; ++i) {
+            // From outside, from a face, and from inside; at an edge or a corner and just beside it.
+            Vec3 from = draw.in_cube(6), to = draw.in_cube(4);
+            const Vec2 place(draw.uniform(0, 0.5), draw.uniform(0, 0.5));
+            if (i % 3 == 1) from = told.eval(static_cast<Id>(i) % 4, place).position;
+            if (i % 3 == 2) from = 0.5 * (told.points()[0] + told.points()[3]);
+            if (i % 5 == 0) to = told.eval(static_cast<Id>(i) % 4, {0, place.y}).position;
+            if (i % 5 == 1) to = told.eval(static_cast<Id>(i) % 4, {0, place.y}).position + 1e-7 * draw.unit();
+            const Ray ray{from, draw.log_uniform(0.1, 10) * (to - from)};
+            const double t_min = i % 2 == 0 ? solved.self_hit_t_min(ray) : draw.uniform(0, 0.5);
+            const std::optional<SurfaceHit> expected = solved.first_hit(ray, t_min);
+            std::optional<SurfaceHit> hit;
+            if (!polyhedron.find_first_hit(ray, t_min, hit)) {
+                ++undecided;
+                continue;
+            }
+            REQUIRE(hit.has_value() == expected.has_value());
+            (hit ? met : missed) += 1;
+            if (!hit) continue;
+            CHECK(hit->face == expected->face);
+            const double far = length(from) + length(hit->point.position);
+            const Vec3 off = hit->point.position - expected->point.position;
+            const double steep = std::fabs(dot(hit->point.normal, normalize(ray.direction)));
+            worst = std::max(worst, steep * length(off) / far);
+            CHECK(length(from + hit->t * ray.direction - hit->point.position) <= 1e-13 * far);
+            CHECK(length(hit->point.normal - expected->point.normal) < 1e-13);
+            const SurfacePoint there = told.eval(hit->face, hit->uv);
+            CHECK(length(there.position - hit->point.position) <= 1e-14 * far);
+            CHECK(length(there.du - hit->point.du) + length(there.dv - hit->point.dv) <= 1e-14 * far);
+        }
+    }
+    INFO(met << " met, " << missed << " missed, " << undecided << " undecided; off by " << worst);
+    CHECK(worst < 1e-13);
+    CHECK(met > 15000);
+    CHECK(missed > 10000);
+    CHECK(undecided < 18000);
+}
+
 TEST_CASE("bodies that are open, dented, folded or turned in parts are no convex polyhedra", "[intersect]") {
     Draw draw(7);
     const FlatFaces box = random_box(draw, false, true);
