@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/raymesh/flat_face.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
-#include "intersect/flat_face.h"
 
 namespace trilens {
 

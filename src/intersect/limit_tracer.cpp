@@ -76,21 +76,6 @@ bool is_met_before(const RayFrame& frame, const SurfaceHit& one, const SurfaceHi
     return std::make_tuple(a > 0, one.face, one.t) < std::make_tuple(b > 0, other.face, other.t);
 }
 
-/// By the bounds of the faces' parts; without bounds all of space.
-Box box_of_closed_form(const Surface& surface) {
-    constexpr int kParts = 8;
-    const std::unique_ptr<const SurfaceBounder> bounder = surface.make_bounder();
-    if (!bounder) return {Vec3(-kUnbounded), Vec3(kUnbounded)};
-    Box box;
-    for (Id face = 0; face < surface.face_count(); ++face) {
-        for (int i = 0; i < kParts * kParts; ++i) {
-            const Vec2 low = Vec2(i % kParts, i / kParts) / double{kParts};
-            box.include(bounder->box(face, low, low + 1.0 / kParts));
-        }
-    }
-    return box;
-}
-
 /// Where the surface has no normal.
 Vec3 normal_for(const Surface& surface, const RayPatch& patch) {
     const Vec3 chord = chord_normal(patch);
@@ -164,7 +149,7 @@ struct LimitTracer::Data {
     Box box_around() const {
         Box box;
         for (const RayPatch& patch : patches) box.include(box_of(patch));
-        if (surface.has_closed_form()) box = box_of_closed_form(surface);
+        if (surface.has_closed_form()) box = box_of(surface);
         const Vec3 room = kRoomAround * box.size() + Vec3(kSelfHit * size);
         return {box.low - room, box.high + room};
     }
@@ -320,6 +305,10 @@ LimitTracer::LimitTracer(const Surface& surface, const Parts& fine, const std::s
 LimitTracer::~LimitTracer() = default;
 LimitTracer::LimitTracer(LimitTracer&&) noexcept = default;
 LimitTracer& LimitTracer::operator=(LimitTracer&&) noexcept = default;
+
+bool LimitTracer::is_polyhedron() const {
+    return data_->polyhedron.has_value();
+}
 
 std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) const {
     const Surface& surface = data_->surface;

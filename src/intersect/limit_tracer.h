@@ -61,6 +61,9 @@ class LimitTracer {
     /// direction.
     double self_hit_t_min(const Ray& ray) const;
 
+    /// Whether the surface is a ConvexPolyhedron, whose rays are answered in closed form.
+    bool is_polyhedron() const;
+
     /// Half the diagonal of a box about the surface's faces, or of their corners and middles.
     double size() const;
 

@@ -129,6 +129,20 @@ Box box_of(const RayPatch& patch) {
     return {glm::min(a, glm::min(b, c)) - patch.stray, glm::max(a, glm::max(b, c)) + patch.stray};
 }
 
+Box box_of(const Surface& surface) {
+    constexpr int kParts = 8;
+    const std::unique_ptr<const SurfaceBounder> bounder = surface.make_bounder();
+    if (!bounder) return {Vec3(-INFINITY), Vec3(INFINITY)};
+    Box box;
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        for (int i = 0; i < kParts * kParts; ++i) {
+            const Vec2 low = Vec2(i % kParts, i / kParts) / double{kParts};
+            box.include(bounder->box(face, low, low + 1.0 / kParts));
+        }
+    }
+    return box;
+}
+
 const PartPatches::Part& PartPatches::make(Id part) const {
     const SurfaceGrid grid = grid_(part);
     TRILENS_CHECK(grid.facets.size() <= kMostOfPart, "a part has few facets");

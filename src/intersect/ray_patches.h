@@ -39,6 +39,8 @@ Vec3 chord_normal(const RayPatch& patch);
 
 /// Holds the facet and what strays from it.
 Box box_of(const RayPatch& patch);
+/// Of a surface, by the bounds of its faces' parts; all of space where it has none.
+Box box_of(const Surface& surface);
 
 /// A ball around each of some patches with its stray, many side by side: the middles' x, y and z, and the
 /// squares of radii. Rows are as long as lanes need; beyond the last ball squares are below zero.

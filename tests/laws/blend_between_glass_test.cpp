@@ -92,6 +92,7 @@ constexpr double kWideFootprint = 0.3;
 struct Arriving {
     double at_point = 0, mean = 0;  // of exact paths, in the footprint's middle and over it
     double by_beams = 0;            // over it
+    double beams_at_point = 0;
 };
 
 /// Over the footprint, by Gauss and Legendre's rule of three points each way.
@@ -186,11 +187,13 @@ TEST_CASE("light comes through what blends where two glasses touch once, and twi
                            at.x, at.y, normal.x, normal.y, tangent.x, tangent.y);
     };
     Receiver there = on_floor(0.1, -1);
+    const Receiver middle = there;
     there.sides = {Vec3(kWideFootprint, 0, 0), Vec3(0, 0, -kWideFootprint)};
     const auto arrives = [&](const std::string& meshes) {
         const LitWorld lit(lit_world(meshes, kLamp));
         const BeamLight& light = lit.light();
-        return Arriving{light.exact_irradiance(there).y, mean_exact(light, there), light.irradiance(there).y};
+        return Arriving{light.exact_irradiance(there).y, mean_exact(light, there), light.irradiance(there).y,
+                        light.irradiance(middle).y};
     };
     // One above the other over the floor, and reaching down below it: then the light ends inside.
     for (const double low : {1.0, -0.5}) {
@@ -203,6 +206,7 @@ TEST_CASE("light comes through what blends where two glasses touch once, and twi
         // But for what goes back and forth between the faces, a few thousandths, which crosses it oftener.
         CHECK(smoked.at_point == Approx(0.5 * free.at_point).epsilon(0.003));
         CHECK(smoked.by_beams == Approx(0.5 * free.mean).epsilon(0.005));
+        CHECK(smoked.beams_at_point == Approx(0.5 * free.at_point).epsilon(0.04));
     }
     // A mirror upright beside the floor, which sends the light of a lamp at (-4, 4, 3); and glass that
     // touches it.
@@ -221,5 +225,6 @@ TEST_CASE("light comes through what blends where two glasses touch once, and twi
         const Arriving smoked = arrives(backed + smoke({-2 + inset, 0, 0}, {1, 0, 0}, {0, 1, 0}));
         CHECK(smoked.at_point == Approx(before.at_point).epsilon(0.003));
         CHECK(smoked.by_beams == Approx(before.mean).epsilon(0.005));
+        CHECK(smoked.beams_at_point == Approx(before.at_point).epsilon(0.04));
     }
 }

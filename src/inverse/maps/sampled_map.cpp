@@ -15,24 +15,17 @@ namespace {
 constexpr double kMiddleShare = 0.5;     // of the tolerance: where the map bends most, others are off by more
 constexpr std::size_t kBatch = 1 << 16;  // places evaluated between two looks at the progress
 
-struct CubicValue {
-    Vec2 value{0}, slope{0};
-};
-
-/// The cubic with these ends and slopes, at t in 0..1.
-CubicValue cubic_hermite(const Vec2& p0, const Vec2& m0, const Vec2& p1, const Vec2& m1, double t) {
-    const double s = 1 - t;
-    return {(1 + 2 * t) * s * s * p0 + t * s * s * m0 + t * t * (3 - 2 * t) * p1 - t * t * s * m1,
-            6 * t * s * (p1 - p0) + s * (1 - 3 * t) * m0 + t * (3 * t - 2) * m1};
-}
-
 /// Coefficients of 1, t, t^2, t^3.
-using Cubic = std::array<Vec2, 4>;
+struct Cubic {
+    std::array<Vec2, 4> of{};
 
-/// The same cubic whole.
-Cubic hermite_cubic(const Vec2& p0, const Vec2& m0, const Vec2& p1, const Vec2& m1) {
-    return {p0, m0, 3.0 * (p1 - p0) - 2.0 * m0 - m1, 2.0 * (p0 - p1) + m0 + m1};
-}
+    /// With these ends and slopes, at t = 0 and 1 (Hermite's).
+    static Cubic through(const Vec2& p0, const Vec2& m0, const Vec2& p1, const Vec2& m1) {
+        return {{p0, m0, 3.0 * (p1 - p0) - 2.0 * m0 - m1, 2.0 * (p0 - p1) + m0 + m1}};
+    }
+    Vec2 value(double t) const { return of[0] + t * (of[1] + t * (of[2] + t * of[3])); }
+    Vec2 slope(double t) const { return of[1] + t * (2.0 * of[2] + 3 * t * of[3]); }
+};
 
 /// A patch along u, which is cubic.
 struct PatchRow {
@@ -43,10 +36,8 @@ struct PatchRow {
 
     /// u in 0..1.
     MapImage at(double u) const {
-        const auto value = [&](const Cubic& c) { return c[0] + u * (c[1] + u * (c[2] + u * c[3])); };
-        const Vec2 by_u = position[1] + u * (2.0 * position[2] + 3 * u * position[3]);
-        return {value(position), Mat2(by_u / size.x, value(by_v) / size.y), weight + u * weight_by_u,
-                history};
+        return {position.value(u), Mat2(position.slope(u) / size.x, by_v.value(u) / size.y),
+                weight + u * weight_by_u, history};
     }
 };
 
@@ -99,27 +90,24 @@ struct SampledMap::Patch {
     PatchRow row(std::size_t i, double v) const {
         std::array<const MapImage*, 4> c;
         for (std::size_t k = 0; k < 4; ++k) c[k] = &(*corner[k])[pairs[k][i]];
-        const auto side = [&](std::size_t a, std::size_t b) {
-            return cubic_hermite(c[a]->position, size.y * c[a]->jacobian[1], c[b]->position,
-                                 size.y * c[b]->jacobian[1], v);
+        const auto edge = [&](std::size_t a, std::size_t b, int axis) {
+            return Cubic::through(c[a]->position, size[axis] * c[a]->jacobian[axis], c[b]->position,
+                                  size[axis] * c[b]->jacobian[axis]);
         };
-        const auto edge = [&](std::size_t a, std::size_t b) {
-            return hermite_cubic(c[a]->position, size.x * c[a]->jacobian[0], c[b]->position,
-                                 size.x * c[b]->jacobian[0]);
-        };
-        const Cubic top = edge(0, 1), bottom = edge(2, 3);
-        const CubicValue left = side(0, 2), right = side(1, 3);
+        const Cubic top = edge(0, 1, 0), bottom = edge(2, 3, 0), left = edge(0, 2, 1), right = edge(1, 3, 1);
+        const Vec2 left_at = left.value(v), right_at = right.value(v), left_slope = left.slope(v),
+                   right_slope = right.slope(v);
         const Vec2 &p00 = c[0]->position, &p10 = c[1]->position, &p01 = c[2]->position, &p11 = c[3]->position;
         PatchRow row;
         row.size = size;
         for (std::size_t k = 0; k < 4; ++k) {
-            row.position[k] = (1 - v) * top[k] + v * bottom[k];
-            row.by_v[k] = bottom[k] - top[k];
+            row.position.of[k] = (1 - v) * top.of[k] + v * bottom.of[k];
+            row.by_v.of[k] = bottom.of[k] - top.of[k];
         }
-        row.position[0] += left.value - (1 - v) * p00 - v * p01;
-        row.position[1] += right.value - left.value - (1 - v) * (p10 - p00) - v * (p11 - p01);
-        row.by_v[0] += left.slope + p00 - p01;
-        row.by_v[1] += right.slope - left.slope + p10 - p00 + p01 - p11;
+        row.position.of[0] += left_at - (1 - v) * p00 - v * p01;
+        row.position.of[1] += right_at - left_at - (1 - v) * (p10 - p00) - v * (p11 - p01);
+        row.by_v.of[0] += left_slope + p00 - p01;
+        row.by_v.of[1] += right_slope - left_slope + p10 - p00 + p01 - p11;
         row.weight = (1 - v) * c[0]->weight + v * c[2]->weight;
         row.weight_by_u = (1 - v) * c[1]->weight + v * c[3]->weight - row.weight;
         row.history = c[0]->history;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/util/parallel.h"
-#include "intersect/convex_polyhedron.h"
 
 namespace trilens {
 namespace {
@@ -201,11 +200,12 @@ bool is_worth_probing(const PathBuild& build, Id facet) {
 void survey_facets(PathBuild& build) {
     if (build.progress.is_surveyed || build.in.params.per_pixel == 0) return;
     build.progress.is_surveyed = true;
-    const Surface& surface = *build.in.context.surface;
+    const ProbeContext& context = build.in.context;
     // Of several samples in a pixel enough is saved beside their paths that polyhedra are probed as others are.
-    const bool is_clipped = build.in.params.per_pixel <= 1 && ConvexPolyhedron::of(surface);
+    const bool is_clipped =
+        build.in.params.per_pixel <= 1 && context.world->optics[context.optic].tracer->is_polyhedron();
     const ProbeCosts costs =
-        ProbeCosts::of(build.in.params.per_pixel, surface.has_closed_form() || is_clipped);
+        ProbeCosts::of(build.in.params.per_pixel, context.surface->has_closed_form() || is_clipped);
     build.out.probe_report.plan = ProbePlan(build.in.params.per_pixel, costs, {});
     std::vector<Id> shown;
     for (Id f = 0; f < build.out.outline.facets.size(); ++f)

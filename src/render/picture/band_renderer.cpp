@@ -11,6 +11,7 @@
 #include "render/marks/marks.h"
 #include "render/picture/channels.h"
 #include "render/picture/fragments.h"
+#include "render/picture/picture_counts.h"
 #include "render/picture/picture_progress.h"
 #include "render/picture/rough_light.h"
 #include "render/picture/sample_colour.h"

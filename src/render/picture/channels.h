@@ -83,13 +83,4 @@ struct PixelFilter {
 /// 0.5, reaching 1.5 pixels, less its value there (Pharr, Jakob, Humphreys, Physically Based Rendering, 8.8).
 PixelFilter make_pixel_filter(FilterKind kind, int side);
 
-// What a picture's statistics are counted of: its pixels, band by band.
-
-/// Counts a pixel by what its middle shows, a sample of `middle`.
-void count_pixel(const World& world, const SampleViews& middle, const SampleView& view,
-                 LayerStatistics& counts);
-
-/// Adds the counts of other pixels.
-void merge_counts(const LayerStatistics& from, LayerStatistics& to);
-
 }  // namespace trilens

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/raymesh/affine_face.h"
+#include "base/raymesh/flat_face.h"
 #include "scene/data/scene_digest.h"
 #include "surfaces/surfaces.h"
 
@@ -39,8 +39,10 @@ int patch_resolution(const Surface& surface) {
 
 /// Whether every face is flat and its parameters are affine: its facets are the face itself.
 bool is_polyhedron(const Surface& surface) {
-    for (Id face = 0; face < surface.face_count(); ++face)
-        if (!affine_face(surface, face)) return false;
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        const std::optional<FlatFace> flat = FlatFace::of(surface, face);
+        if (!flat || !flat->is_affine()) return false;
+    }
     return true;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/raymesh/affine_face.h"
+#include "base/raymesh/flat_face.h"
 
 namespace trilens {
 namespace {
@@ -39,16 +39,16 @@ std::optional<CoaxialPath> CoaxialChain::path_to(const Vec3& point) const {
 
 // Parallel planes.
 
-/// None where affine_face has none.
+/// None where the face is not flat, or its parameters are not affine.
 std::optional<CoaxialChain::PlaneFace> CoaxialChain::plane_face(const Surface& surface, Id face) {
-    const std::optional<AffineFace> affine = affine_face(surface, face);
-    if (!affine) return std::nullopt;
-    const Vec3 &u = affine->by_u, &v = affine->by_v, across = cross(u, v);
+    const std::optional<FlatFace> flat = FlatFace::of(surface, face);
+    if (!flat || !flat->is_affine()) return std::nullopt;
+    const Vec3 &u = flat->by_u(), &v = flat->by_v(), across = cross(u, v);
     PlaneFace plane;
     plane.domain = surface.domain(face);
-    plane.corner = affine->corner;
-    plane.normal = surface.eval_first_order(face, {0.25, 0.25}).normal;
-    if (plane.normal == Vec3(0) || !(dot(across, across) > 0)) return std::nullopt;
+    plane.corner = flat->corner();
+    plane.normal = flat->normal();
+    if (!(dot(across, across) > 0)) return std::nullopt;
     plane.by_u = cross(v, across) / dot(u, cross(v, across));
     plane.by_v = cross(across, u) / dot(v, cross(across, u));
     return plane;

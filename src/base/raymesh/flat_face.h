@@ -15,6 +15,14 @@ class FlatFace {
     /// of how far it reaches from the world's origin.
     static std::optional<FlatFace> of(const Surface& surface, Id face);
 
+    /// Whether places are affine in their parameters, to that: parallelograms and triangles.
+    bool is_affine() const { return is_affine_; }
+    // Of the place; the normal is unit.
+    const Vec3& corner() const { return corner_; }
+    const Vec3& by_u() const { return by_u_; }
+    const Vec3& by_v() const { return by_v_; }
+    const Vec3& normal() const { return normal_; }
+
     /// The parameters of a place in its plane that is surely within the face; none elsewhere.
     std::optional<Vec2> parameters_of(const Vec3& place) const;
 
@@ -26,6 +34,7 @@ class FlatFace {
 
     FaceDomain domain_ = FaceDomain::kSquare;
     Vec3 corner_{0}, by_u_{0}, by_v_{0}, by_both_{0}, normal_{0};
+    bool is_affine_ = false;
     std::array<int, 2> axes_{0, 1};  // coordinates that tell places of its plane apart
 };
 

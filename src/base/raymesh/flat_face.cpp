@@ -1,4 +1,4 @@
-#include "intersect/flat_face.h"
+#include "base/raymesh/flat_face.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,6 @@ constexpr double kBorderRoom = 1e-9;
 /// After a step as small as this one more leaves nothing but rounding.
 constexpr double kLastStep = 1e-8;
 constexpr int kMostInversionSteps = 10;
-/// Grids have their places at such shares of a side. Rays to them are left to be solved for, which starts there
-/// and finds them to the last bit.
-constexpr double kGridShares = 0x1p20, kShareRounding = 0x1p-44;
-
-bool is_of_grid(double share) {
-    return std::fabs(share * kGridShares - std::round(share * kGridShares)) <= kShareRounding * kGridShares;
-}
 
 }  // namespace
 
@@ -47,6 +40,7 @@ std::optional<FlatFace> FlatFace::of(const Surface& surface, Id face) {
         if (!(off <= kFlatFaceRounding * far && length(exact.normal - own.normal) <= kFlatFaceRounding))
             return std::nullopt;
     }
+    flat.is_affine_ = length(flat.by_both_) <= kFlatFaceRounding * far;
     return flat;
 }
 
@@ -67,7 +61,6 @@ std::optional<Vec2> FlatFace::parameters_of(const Vec3& place) const {
     if (!is_there || !(std::min(uv.x, uv.y) > kBorderRoom)) return std::nullopt;
     const double beyond = domain_ == FaceDomain::kSquare ? std::max(uv.x, uv.y) : uv.x + uv.y;
     if (!(beyond < 1 - kBorderRoom)) return std::nullopt;
-    if (is_of_grid(uv.x) && is_of_grid(uv.y)) return std::nullopt;
     return uv;
 }
 
