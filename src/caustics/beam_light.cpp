@@ -22,6 +22,14 @@ constexpr double kMostBent = 2;
 /// What falls on faces smaller than this share of the scene is looked up beam by beam.
 constexpr double kSmallFace = 0.004;
 
+/// Irradiance, the sum of its colours, that a source brings to a place where nothing stands in its way.
+double straight_light(const BeamSource& source, const Vec3& place, const Vec3& normal) {
+    const Vec3 way = source.is_parallel ? source.direction : place - source.position;
+    const double far = length(way), cosine = -dot(way, normal) / far;
+    if (!(cosine > 0)) return 0;
+    return strength_of(source.strength(way / far)) * cosine / (source.is_parallel ? 1 : far * far);
+}
+
 /// Of the making of beams: until windows are divided, and until their borders are found.
 constexpr double kDividingShare = 0.2, kBorderShare = 0.6;
 
@@ -87,8 +95,10 @@ const PlaneBeams* BeamLight::plane_beams(const ReceiverSide& on, const Progress&
             params.brightest = std::max(params.brightest, end.light.x + end.light.y + end.light.z);
         params.faint_light = kFaintShare * refined_->mean_light();
         params.same_place = kSamePlace * space_.size;
-        return std::make_unique<PlaneBeams>(PlaneBeams::Source{beams_, tree_, *refined_}, face,
-                                            on.is_back ? -face.normal : face.normal, params, progress);
+        const Vec3 normal = on.is_back ? -face.normal : face.normal;
+        params.is_alone = straight_light(source_, face.center, normal) < refined_->mean_light();
+        return std::make_unique<PlaneBeams>(PlaneBeams::Source{beams_, tree_, *refined_}, face, normal,
+                                            params, progress);
     });
 }
 

@@ -37,15 +37,18 @@ struct QuarterMiddle {
     std::size_t part, middle;  // whose exact ray it is
 };
 
+/// The weights of a beam's ends, and those in the middles of its sides.
+const std::array<Vec3, 6> kNodes{Vec3(1, 0, 0),     Vec3(0, 1, 0),     Vec3(0, 0, 1),
+                                 Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(0.5, 0.5, 0)};
+
 /// The nine places at which a beam's four parts have exact rays that it has not.
 std::array<QuarterMiddle, 9> quarter_middles() {
-    const std::array<Vec3, 6> at{Vec3(1, 0, 0),     Vec3(0, 1, 0),     Vec3(0, 0, 1),
-                                 Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(0.5, 0.5, 0)};
     const std::size_t ends[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
     std::array<QuarterMiddle, 9> all;
     for (std::size_t part = 0; part < 3; ++part)
         for (std::size_t k = 0; k < 3; ++k)
-            all[3 * part + k] = {0.5 * (at[ends[part][(k + 1) % 3]] + at[ends[part][(k + 2) % 3]]), part, k};
+            all[3 * part + k] = {0.5 * (kNodes[ends[part][(k + 1) % 3]] + kNodes[ends[part][(k + 2) % 3]]),
+                                 part, k};
     return all;
 }
 
@@ -93,7 +96,7 @@ struct PlaneBeams::PartsMaker {
         const BeamEnds& whole = corners_of(source.beams, source.beams.beams[index]).end;
         BeamEnds looked = end;
         for (const BeamEnd*& one : looked) {
-            if (std::find(whole.begin(), whole.end(), one) != whole.end()) continue;
+            if (one->object > 0 || std::find(whole.begin(), whole.end(), one) != whole.end()) continue;
             const auto [known, is_new] = seen.try_emplace(one, *one);
             if (is_new) source.refined.look_ahead(index, known->second);
             one = &known->second;
@@ -130,6 +133,20 @@ struct PlaneBeams::PartsMaker {
         return fall(corners, plane, std::max(half.x, half.y));
     }
 
+    /// How many times brighter than in the mean it is somewhere, over a tolerance's width at folds.
+    double peak(const std::array<Vec2, 6>& at) const {
+        const double all = std::fabs(cross(at[1] - at[0], at[2] - at[0]));
+        double longest = 0, least = INFINITY, most = -INFINITY;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const double spread = quadratic_spread(at, kNodes[k]);
+            least = std::min(least, spread), most = std::max(most, spread);
+            if (k < 3) longest = std::max(longest, length(at[(k + 1) % 3] - at[k]));
+        }
+        const double at_fold = std::sqrt(std::max(longest / params.tolerance, 1.0));
+        if (!(least * most > 0)) return at_fold;
+        return std::clamp(all / std::min(std::fabs(least), std::fabs(most)), 1.0, at_fold);
+    }
+
     /// How far it may be off.
     double room_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at) const {
         double strength = 0;
@@ -137,7 +154,8 @@ struct PlaneBeams::PartsMaker {
             strength =
                 std::max({strength, sum_of(beam.corners.end[k]->light), sum_of(beam.middle[k]->light)});
         const double area = 0.5 * std::fabs(cross(at[1] - at[0], at[2] - at[0]));
-        const double brightness = strength * beam.corners.measure / (params.faint_light * area);
+        const double brightness =
+            (params.is_alone ? peak(at) : 1) * strength * beam.corners.measure / (params.faint_light * area);
         if (brightness < 1) return INFINITY;
         return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength) *
                std::clamp(kBright / brightness, kLeastRoom, kMostRoom);

@@ -4,11 +4,17 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "base/util/parallel.h"
+#include "caustics/beams/quadratic.h"
 
 namespace trilens {
 namespace {
+
+/// Light is looked at no closer than this share of what the light's mean over the scene asks.
+constexpr double kLeastOnFace = 0.01;
 
 ReceiverPlane plane_of(const ReceiverFace& face, const Vec3& normal) {
     Receiver receiver;
@@ -19,6 +25,37 @@ ReceiverPlane plane_of(const ReceiverFace& face, const Vec3& normal) {
     return plane;
 }
 
+/// The light that beams bring to a face, as the rays at their ends have it.
+struct FaceLight {
+    double mean = 0;       // irradiance, the sum of its colours; 0: no ray at an end falls there
+    double brightest = 0;  // path: the sum of its colours
+};
+
+FaceLight light_on(const Beams& beams, std::span<const Id> near, const ReceiverPlane& plane,
+                   const Vec2& half) {
+    FaceLight light;
+    for (const Id beam : near)
+        for (const Id e : beams.beams[beam].end) {
+            const BeamEnd& end = beams.ends[e];
+            const std::optional<Vec2> at = place_on(plane, end);
+            if (!at || !(std::fabs(at->x) <= half.x && std::fabs(at->y) <= half.y)) continue;
+            const double strength = strength_of(end.light);
+            light.mean += beams.beams[beam].measure / 3 * strength;
+            light.brightest = std::max(light.brightest, strength);
+        }
+    light.mean /= 4 * half.x * half.y;
+    return light;
+}
+
+/// Where little light comes to a face, but no other, that is what is looked at there.
+PlaneBeamsParams params_on_face(PlaneBeamsParams params, const FaceLight& light) {
+    if (!params.is_alone || light.mean == 0) return params;
+    params.brightest = light.brightest;
+    params.faint_light =
+        std::clamp(kFaintShare * light.mean, kLeastOnFace * params.faint_light, params.faint_light);
+    return params;
+}
+
 }  // namespace
 
 Way way_to(const BeamEnds& ends, const ReceiverPlane& plane, double same_place) {
@@ -27,7 +64,8 @@ Way way_to(const BeamEnds& ends, const ReceiverPlane& plane, double same_place) 
         const double fall = -dot(end->direction, plane.normal);
         const double t = dot(end->origin - plane.point, plane.normal) / fall;
         if (!(fall > 0)) return Way::kUnknown;
-        if (std::fabs(end->object - t) <= same_place / fall) ++free;
+        const double before = t - same_place / fall;
+        if (end->object > 0 && end->object >= before && end->optic >= before) ++free;
         if (end->optic < t) ++stopped;
     }
     return free == 3 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
@@ -40,7 +78,8 @@ PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec
     source.tree.for_each_near(face.center, face.radius + params.reach,
                               [&](Id beam) { near.push_back(beam); });
     const Vec2 half = face.half + params.reach;
-    const Target target{source, plane_, params, half, progress};
+    const PlaneBeamsParams own = params_on_face(params, light_on(source.beams, near, plane_, half));
+    const Target target{source, plane_, own, half, progress};
     std::vector<Parts> made(near.size());
     LoopProgress done(progress, static_cast<double>(near.size()));
     parallel_for(near.size(), 32, [&](std::size_t from, std::size_t to) {

@@ -28,6 +28,9 @@ struct PlaneBeamsParams {
     double brightest = 0;    // path of the light: the sum of its colours
     double faint_light = 0;  // irradiance, the sum of its colours, that is not looked at closely
     double same_place = 0;   // world units
+    // No light of the source comes straight to the face, which would drown what is faint there: it is looked
+    // at as closely as it is bright beside what else comes to the face over optics.
+    bool is_alone = false;
 };
 
 /// The beams that come to one side of a face, as curved beams in the plane's own coordinates: divided by
