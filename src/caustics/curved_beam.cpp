@@ -33,6 +33,14 @@ std::optional<std::array<Vec2, 6>> CurvedBeam::fall(const ReceiverPlane& plane) 
     return at;
 }
 
+std::array<double, 3> shares_of(const std::array<Vec2, 6>& at, const FallenBeam& piece, double pieces) {
+    const double area = pieces * std::fabs(cross(piece.at[1] - piece.at[0], piece.at[2] - piece.at[0]));
+    std::array<double, 3> share;
+    for (std::size_t k = 0; k < 3; ++k) share[k] = area / std::fabs(quadratic_spread(at, piece.weights[k]));
+    keep_light(share);
+    return share;
+}
+
 double bulge_on_plane(const std::array<Vec2, 6>& at) {
     double bulge = 0;
     for (std::size_t k = 0; k < 3; ++k)

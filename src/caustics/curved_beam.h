@@ -43,6 +43,10 @@ struct CurvedBeam {
 /// The mean of the light that sides x sides pieces have.
 Vec3 mean_light(const std::array<Vec3, 6>& light, int sides);
 
+/// Of the mean light of a piece, one of `pieces` of a beam, how much falls around each of its corners, as the
+/// quadratic has it.
+std::array<double, 3> shares_of(const std::array<Vec2, 6>& at, const FallenBeam& piece, double pieces);
+
 /// How far the farthest middle lies from that of its chord.
 double bulge_on_plane(const std::array<Vec2, 6>& at);
 
@@ -145,6 +149,7 @@ void CurvedBeam::for_each_piece(const FallenCurve& curve, double half, int sides
                 fallen.place[k] =
                     w.x * corners.end[0]->place + w.y * corners.end[1]->place + w.z * corners.end[2]->place;
         }
+        if (half == 0) fallen.share = shares_of(at, fallen, static_cast<double>(grid.pieces));
         fallen.measure = corners.measure / static_cast<double>(grid.pieces);
         use(corners, fallen);
     }

@@ -41,16 +41,6 @@ double share_of(const BeamEnd& end, const EndOnPlane& on, double mean) {
     return end.concentration(on.height / on.fall) * on.fall / mean;
 }
 
-/// Scaled so that the beam's light stays what it is.
-void keep_light(std::array<double, 3>& share) {
-    double sum = 0;
-    for (double& one : share) {
-        one = std::isfinite(one) ? std::clamp(one, 1 / kMostShare, kMostShare) : kMostShare;
-        sum += one;
-    }
-    for (double& one : share) one *= 3 / sum;
-}
-
 }  // namespace
 
 ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
@@ -74,6 +64,15 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
     }
     dual_s = unit_across(normal);
     dual_t = cross(normal, dual_s);
+}
+
+void keep_light(std::array<double, 3>& share) {
+    double sum = 0;
+    for (double& one : share) {
+        one = std::isfinite(one) ? std::clamp(one, 1 / kMostShare, kMostShare) : kMostShare;
+        sum += one;
+    }
+    for (double& one : share) one *= 3 / sum;
 }
 
 std::optional<Vec2> place_on(const ReceiverPlane& plane, const BeamEnd& end) {

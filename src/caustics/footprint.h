@@ -43,6 +43,10 @@ struct FallenBeam {
     double measure = 0;                                                        // of the light's film
 };
 
+/// Scaled so that the triangle's light stays what it is; where corners differ by much, as at folds, by no
+/// more than says anything.
+void keep_light(std::array<double, 3>& share);
+
 /// The triangles, at most three, that a beam makes on the side of the plane that its rays come to; fewer
 /// parts where some of its rays go away from the plane, or start behind it.
 struct FallenBeams {

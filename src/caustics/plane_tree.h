@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
+#include "base/util/few.h"
 
 namespace trilens {
 
@@ -116,12 +117,22 @@ void PlaneTree::for_each_near(const PlaneParallelogram& asked, const Use& use) c
     std::size_t open_count = 0;
     open[open_count++] = 0;
     bool is_first = true;
-    std::vector<std::uint32_t> several;  // of more than one leaf, some more than once
+    Few<std::uint32_t, 64> several, both;  // of more than one leaf, in order, as those of each are
     const auto for_each_in = [&](const Node& leaf, const auto& use_shape) {
         for (std::uint32_t i = leaf.first; i < leaf.end; ++i)
             if (shapes_[references_[i]].meets(around, asked)) use_shape(references_[i]);
     };
-    const auto add = [&](std::uint32_t shape) { several.push_back(shape); };
+    const auto add = [&](const Node& leaf) {
+        both.clear();
+        const std::uint32_t* next = several.begin();
+        for_each_in(leaf, [&](std::uint32_t shape) {
+            for (; next != several.end() && *next <= shape; ++next)
+                if (*next < shape) both.push_back(*next);
+            both.push_back(shape);
+        });
+        for (; next != several.end(); ++next) both.push_back(*next);
+        std::swap(several, both);
+    };
     while (open_count > 0) {
         const Node* node = &nodes_[open[--open_count]];
         while (node->child != 0) {
@@ -132,12 +143,9 @@ void PlaneTree::for_each_near(const PlaneParallelogram& asked, const Use& use) c
             node = &nodes_[low ? child : child + 1];
         }
         if (is_first && open_count == 0) return for_each_in(*node, use);
-        if (is_first) several.reserve(64);
         is_first = false;
-        for_each_in(*node, add);
+        add(*node);
     }
-    std::sort(several.begin(), several.end());
-    several.erase(std::unique(several.begin(), several.end()), several.end());
     for (const std::uint32_t shape : several) use(shape);
 }
 

@@ -88,7 +88,7 @@ RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, co
 
 void RefinedBeams::find_sides(const Progress& progress) {
     struct Side {
-        Id beam, a, b;
+        Id beam, a, b, known;
     };
     std::vector<Side> sides;
     std::unordered_map<std::uint64_t, Id> known;
@@ -99,8 +99,10 @@ void RefinedBeams::find_sides(const Progress& progress) {
             const auto [a, b] = std::minmax(end[(k + 1) % 3], end[(k + 2) % 3]);
             const auto [at, is_new] =
                 known.try_emplace((std::uint64_t{a} << 32) | b, static_cast<Id>(sides.size()));
-            if (is_new) sides.push_back({i, a, b});
+            if (is_new) sides.push_back({i, a, b, kNone});
             own[k] = at->second;
+            Id& middle = sides[at->second].known;
+            if (middle == kNone) middle = beams_->beams[i].middle[k];
         }
     }
     side_middle_.resize(sides.size());
@@ -108,7 +110,11 @@ void RefinedBeams::find_sides(const Progress& progress) {
     parallel_for(sides.size(), 64, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             done.stop_if_cancelled();
-            side_middle_[i] = middle(sides[i].beam, beams_->ends[sides[i].a], beams_->ends[sides[i].b]);
+            const Side& side = sides[i];
+            const BeamEnd &a = beams_->ends[side.a], &b = beams_->ends[side.b];
+            const bool is_known = side.known != kNone &&
+                                  !is_beyond_tear(a.origin, beams_->middles[side.known].origin, b.origin);
+            side_middle_[i] = is_known ? beams_->middles[side.known] : middle(side.beam, a, b);
         }
         done.add(static_cast<double>(last - first));
     });

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "caustics/beams/quadratic.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -63,11 +63,14 @@ TEST_CASE("a wide mirror's light is that of the light's image, from end to end o
     constexpr double kWide = 0.1;
     std::mt19937 random(11);
     std::uniform_real_distribution<double> place(-1, 1);
-    double square = 0;
+    double square = 0, square_at_points = 0;
     constexpr int kCount = 200;
     for (int i = 0; i < kCount; ++i) {
         Receiver there = on_floor(0.1 + 0.5 * place(random), -1 + 0.5 * place(random));
         CHECK(lit.light().exact_irradiance(there).y == Approx(expected_at(there.point)).epsilon(1e-7));
+        const double off_at_point = lit.light().irradiance(there).y / expected_at(there.point) - 1;
+        CHECK(std::fabs(off_at_point) < 0.008);
+        square_at_points += off_at_point * off_at_point;
         there.sides = {Vec3(kWide, 0, 0), Vec3(0, 0, -kWide)};
         double expected = 0;  // over the footprint, by Simpson's rule
         for (const int u : {-1, 0, 1})
@@ -79,7 +82,9 @@ TEST_CASE("a wide mirror's light is that of the light's image, from end to end o
         CHECK(std::fabs(off) < 0.008);
         square += off * off;
     }
+    CAPTURE(std::sqrt(square / kCount), std::sqrt(square_at_points / kCount));
     CHECK(std::sqrt(square / kCount) < 0.0025);
+    CHECK(std::sqrt(square_at_points / kCount) < 0.0025);
 }
 
 TEST_CASE("a mirror ball sends light by as many paths as project finds, with its derivative",

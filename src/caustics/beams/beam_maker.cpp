@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -36,12 +37,15 @@ struct CutEnd {
     static CutEnd at(const HistoryBorder& border) { return {kNone, &border, border.place, &border.path}; }
 };
 
+constexpr std::array<Id, 3> kNoMiddles{kNone, kNone, kNone};
+
 class BeamMaker {
   public:
     BeamMaker(BeamGrid& grid, Beams& beams) : grid_(grid), beams_(beams), histories_(grid, beams.histories) {}
     void make(const Progress& progress);
 
   private:
+    BeamEnd ray_at(const Vec2& place, const LightPath& path) const;
     Id add_end(const Vec2& place, const LightPath& path);
     Id end_of(Id corner, Id history);
     Id border_end(const HistoryBorder& border, Id history);
@@ -50,7 +54,9 @@ class BeamMaker {
     }
     bool falls(const std::array<Id, 3>& ends) const;
     void add_arriving(Id history, const Vec3& flux);
-    void add_beam(const std::array<Id, 3>& ends, Id history);
+    Id known_middle(Id a, Id b, Id history);
+    std::array<Id, 3> known_middles(const std::array<Id, 3>& corner, Id history);
+    void add_beam(const std::array<Id, 3>& ends, Id history, const std::array<Id, 3>& middle = kNoMiddles);
     void add_tip(Id a, Id b, Id c, Id history);
     void add_stump(Id b, Id c, Id without, Id history);
     void add_triangle(const BeamGrid::Triangle& triangle, Id history);
@@ -67,20 +73,19 @@ class BeamMaker {
     BeamGrid& grid_;
     Beams& beams_;
     GridHistories histories_;
-    std::map<std::tuple<Id, Id, Id>, Id> end_;  // by corner inside, outside or kNone at a corner, history
+    std::unordered_map<std::uint64_t, Id> middle_;  // by corner and history
+    std::map<std::tuple<Id, Id, Id>, Id> end_;      // by corner inside, outside or kNone at a corner, history
     MergeParams merge_;
 };
 
+BeamEnd BeamMaker::ray_at(const Vec2& place, const LightPath& path) const {
+    return {place,      path.ray.origin, path.ray.direction, path.arriving,
+            path.light, path.optic,      path.object,        grid_.window().density(place),
+            {}};
+}
+
 Id BeamMaker::add_end(const Vec2& place, const LightPath& path) {
-    beams_.ends.push_back({place,
-                           path.ray.origin,
-                           path.ray.direction,
-                           path.arriving,
-                           path.light,
-                           path.optic,
-                           path.object,
-                           grid_.window().density(place),
-                           {}});
+    beams_.ends.push_back(ray_at(place, path));
     return static_cast<Id>(beams_.ends.size() - 1);
 }
 
@@ -108,11 +113,27 @@ void BeamMaker::add_arriving(Id history, const Vec3& flux) {
         beams_.arriving.try_emplace({steps[0].optic, steps[0].event}, Vec3(0)).first->second += flux;
 }
 
-void BeamMaker::add_beam(const std::array<Id, 3>& ends, Id history) {
+/// Of two corners' side, where the history's ray was looked at there.
+Id BeamMaker::known_middle(Id a, Id b, Id history) {
+    const Id corner = grid_.middle_between(a, b);
+    const LightPath* path = corner == kNone ? nullptr : histories_.path_at(corner, history);
+    if (!path) return kNone;
+    const auto [at, is_new] =
+        middle_.try_emplace(std::uint64_t{corner} << 32 | history, static_cast<Id>(beams_.middles.size()));
+    if (is_new) beams_.middles.push_back(ray_at(grid_.place(corner), *path));
+    return at->second;
+}
+
+std::array<Id, 3> BeamMaker::known_middles(const std::array<Id, 3>& corner, Id history) {
+    return {known_middle(corner[1], corner[2], history), known_middle(corner[2], corner[0], history),
+            known_middle(corner[0], corner[1], history)};
+}
+
+void BeamMaker::add_beam(const std::array<Id, 3>& ends, Id history, const std::array<Id, 3>& middle) {
     const double measure = grid_.window().measure(beams_.ends[ends[0]].place, beams_.ends[ends[1]].place,
                                                   beams_.ends[ends[2]].place);
     if (!(measure > 0)) return;
-    LightBeam beam{ends, history, measure, static_cast<Id>(beams_.windows.size() - 1), {}};
+    LightBeam beam{ends, history, measure, static_cast<Id>(beams_.windows.size() - 1), {}, middle};
     beam.flux = beam_integral(beams_, beam, [](const BeamEnd& end) { return end.light; });
     add_arriving(history, beam_integral(beams_, beam, [](const BeamEnd& end) { return end.arriving; }));
     if (falls(ends)) beams_.beams.push_back(beam);
@@ -153,7 +174,7 @@ void BeamMaker::add_triangle(const BeamGrid::Triangle& triangle, Id history) {
     }
     if (count == 3)
         add_beam({end_of(corner[0], history), end_of(corner[1], history), end_of(corner[2], history)},
-                 history);
+                 history, known_middles(corner, history));
 }
 
 NodeCorners BeamMaker::corners_in(Id node) const {
@@ -185,7 +206,7 @@ bool BeamMaker::add_merged(Id history, const NodeCorners& in) {
         if (!samples.back().path) return false;
     }
     if (!is_one_beam(samples, measure, merge_)) return false;
-    LightBeam beam{{}, history, measure, static_cast<Id>(beams_.windows.size() - 1), {}};
+    LightBeam beam{{}, history, measure, static_cast<Id>(beams_.windows.size() - 1), {}, kNoMiddles};
     Vec3 arriving(0);
     for (const Id t : in.triangles) {
         const auto& [a, b, c] = grid_.triangles()[t].corner;
@@ -198,6 +219,7 @@ bool BeamMaker::add_merged(Id history, const NodeCorners& in) {
     add_arriving(history, arriving);
     if (!(beam.measure > 0) || !samples[0].path->falls()) return true;
     for (std::size_t k = 0; k < 3; ++k) beam.end[k] = end_of(in.corners[k].first, history);
+    beam.middle = known_middles({in.corners[0].first, in.corners[1].first, in.corners[2].first}, history);
     beams_.beams.push_back(beam);
     return true;
 }

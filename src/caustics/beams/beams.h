@@ -41,10 +41,13 @@ struct LightBeam {
     double measure = 0;  // of the light's film
     Id window = 0;       // of Beams::windows
     Vec3 flux{0};        // that leaves with it, as its parts' exact rays have it
+    // Across from its ends, the exact rays in the middles of its sides: of Beams::middles; kNone: not known.
+    std::array<Id, 3> middle{kNone, kNone, kNone};
 };
 
 struct Beams {
     std::vector<BeamEnd> ends;
+    std::vector<BeamEnd> middles;  // rays that told whether to divide
     std::vector<LightBeam> beams;
     std::vector<LightHistory> histories;
     std::vector<LightWindow> windows;
