@@ -253,7 +253,8 @@ int main(int count, char** words) {
     const double map_seconds = cpu_seconds() - start;
 
     const FacetWorld facets(*world);
-    const std::vector<BeamSource> sources = beam_sources(world->scene.lights[light], world->scene.background);
+    const std::vector<BeamSource> sources =
+        beam_sources(world->scene.lights[light], world->scene.background, world->shading.size);
     std::vector<Vec3> outline;
     for (const SurfaceGrid& grid : facets.grids)
         outline.insert(outline.end(), grid.points.begin(), grid.points.end());

@@ -211,23 +211,31 @@ void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const
 }
 
 /// Whether anything lies between where a piece falls and where it leaves the last optic. That optic itself is
-/// not asked so near to it as the piece is wide: its origin may lie a little inside of it.
+/// not asked so near to it as the piece is wide: its origin may lie a little inside of it. Others are asked
+/// up to where the way comes into it there, since they may lie on it, or just inside.
 bool BeamLight::is_hidden(const Piece& piece, const Vec3& from, const Vec3& origin) const {
     const Vec3 toward = origin - from;
     Segments way;
     way.add(from, (1 - kSamePlace) * toward);
     if (space_.objects->occluded(way)) return true;
     const Id last = beams_.histories[piece.beam.history].steps.back().optic;
-    for (Id i = 0; i < space_.optics->optics.size(); ++i)
-        if (i != last && space_.optics->optics[i].tracer->occluded(way, way.all())) return true;
     const double far = length(toward);
     double wide = 0;
     for (std::size_t k = 0; k < 3; ++k)
         wide = std::max(wide, length(piece.corners.end[k]->origin - piece.corners.end[(k + 1) % 3]->origin));
+    const LimitTracer& tracer = *space_.optics->optics[last].tracer;
     if (wide < far) {
         Segments before;
         before.add(from, (1 - std::max(wide / far, kSamePlace)) * toward);
-        if (space_.optics->optics[last].tracer->occluded(before, before.all())) return true;
+        if (tracer.occluded(before, before.all())) return true;
+    }
+    for (Id i = 0; i < space_.optics->optics.size(); ++i) {
+        if (i == last || !space_.optics->optics[i].tracer->occluded(way, way.all())) continue;
+        const auto into = tracer.first_hit({from, toward});
+        if (!into || into->t >= 1 - kSamePlace) return true;
+        Segments outside;
+        outside.add(from, (into->t - kSamePlace) * toward);
+        if (space_.optics->optics[i].tracer->occluded(outside, outside.all())) return true;
     }
     int met = 0;
     for (const Id e : piece.beam.end) met += beams_.ends[e].optic < (1 - kSamePlace) * far;

@@ -124,7 +124,7 @@ TEST_CASE("hardly a ray is traced after beams were stopped", "[caustics][progres
         Told told;
         told.stop_at = share;
         std::atomic<std::size_t> after = 0;
-        BeamSource source = beam_sources(world->scene.lights[0], world->scene.background).front();
+        BeamSource source = beam_sources(world->scene.lights[0], world->scene.background, 1).front();
         source.strength = [&, usual = source.strength](const Vec3& direction) {
             if (told.cancel) ++after;
             return usual(direction);

@@ -342,7 +342,7 @@ TEST_CASE("sphere lights and backgrounds send their light to optics", "[laws][la
     double from_above = 0, from_below = 0;
     Background white;
     white.color = Vec3(1);
-    for (const BeamSource& source : beam_sources(sky, white)) {
+    for (const BeamSource& source : beam_sources(sky, white, 1)) {
         CHECK(source.is_parallel);
         const double light = source.strength(source.direction).y * source.direction.y;
         (light < 0 ? from_above : from_below) += std::fabs(light);

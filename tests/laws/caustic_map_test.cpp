@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/util/format.h"
 #include "inverse/maps/caustic_map.h"
 #include "support/lit_world.h"
 #include "support/test.h"
@@ -45,6 +46,72 @@ TEST_CASE("what a map says that ends on a floor comes to it where Fresnel's weig
     const CausticMap map = make_caustic_map(*world, onto_object(0, 32));
     CHECK(map.flux_received.y > 0.1);
     CHECK(map.flux_on_objects.y == Approx(map.flux_received.y).epsilon(3e-3));
+}
+
+TEST_CASE("what lies on a mirror's surface, or just inside of it, hides nothing of its light",
+          "[laws][law][caustics]") {
+    const auto ball = [](const std::string& name, const std::string& material, double radius) {
+        return R"({"name": ")" + name + R"(", "role": "optic", "material": ")" + material +
+               R"(", "resolution": 8, "primitive": {"type": "sphere", "center": [0, 2, 0], "radius": )" +
+               fmt::format("{}", radius) + "}}";
+    };
+    const std::string mirror = ball("ball", "mirror", 0.8),
+                      lamp = R"({"type": "point", "position": [0.3, 0.7, 1.5],
+        "intensity": 20})";
+    for (const std::string& optics :
+         {mirror + "," + ball("silvered", "glass", 0.8), ball("silvered", "glass", 0.8) + "," + mirror,
+          mirror + "," + ball("twin", "mirror", 0.8), mirror + "," + ball("thin", "glass", 0.8001)})
+        for (const bool exact : {false, true}) {
+            CausticMapRequest request = onto_object(0, 16);
+            request.exact = exact;
+            const CausticMap map = make_caustic_map(*lit_world(optics, lamp), request);
+            INFO(optics << (exact ? ", exact" : ""));
+            REQUIRE(map.flux_on_objects.y > 1);
+            CHECK(map.flux_received.y == Approx(map.flux_on_objects.y).epsilon(2e-3));
+        }
+}
+
+TEST_CASE("the light of a ball is the same in any unit of length, whatever lamp it is of",
+          "[laws][law][caustics]") {
+    // Radiance stays: irradiance of lamps that have an extent, too; that of points grows by the square.
+    const auto text = [](const std::string& kind, double unit) {
+        const auto at = [unit](double x, double y, double z) {
+            return fmt::format("[{}, {}, {}]", unit * x, unit * y, unit * z);
+        };
+        const std::string size = kind == "rectangle"
+                                     ? fmt::format(R"("size": [{}, {}],)", 0.5 * unit, 0.3 * unit)
+                                     : fmt::format(R"("radius": {},)", 0.25 * unit);
+        const std::string way = kind == "sphere" ? "" : R"("direction": [-0.1, -1, 0.1],)";
+        return R"({"version": 1, "film": {"width": 8, "height": 8}, "cameras": [{"lookAt": {"eye": )" +
+               at(0, 3, 6) +
+               R"(, "at": [0, 0, 0]}}], "materials": [{"name": "matt"}, {"name": "mirror", "metallicFactor": 1}], "lights": [{"type": ")" +
+               kind + "\", " + size + way + R"("position": )" + at(0.3, 2.4, 0.2) +
+               R"(, "samples": 2, "caustics": true}], "meshes": [{"name": "floor", "role": "object", "material": "matt", "points": [)" +
+               at(-2, 0, 2) + "," + at(2, 0, 2) + "," + at(2, 0, -2) + "," + at(-2, 0, -2) +
+               R"(], "faceVertexCounts": [4], "faceVertexIndices": [0, 1, 2, 3]}, {"name": "ball", "role": "optic",
+               "material": "mirror", "primitive": {"type": "sphere", "center": )" +
+               at(0, 0.8, 0) + R"(, "radius": )" + fmt::format("{}", 0.6 * unit) + "}}]}";
+    };
+    for (const std::string kind : {"rectangle", "disk", "sphere"}) {
+        const auto light = [&](double unit) {
+            const auto world = make_world(parse_scene(text(kind, unit)), ignore);
+            return make_caustic_map(*world, onto_object(0, 16)).irradiance;
+        };
+        const std::vector<Vec3> whole = light(1);
+        const double brightest =
+            std::max_element(whole.begin(), whole.end(), [](const Vec3& a, const Vec3& b) {
+                return a.y < b.y;
+            })->y;
+        REQUIRE(brightest > 0);
+        for (const double unit : {1e-6, 1e-3, 1e3}) {
+            const std::vector<Vec3> scaled = light(unit);
+            double off = 0;
+            for (std::size_t i = 0; i < whole.size(); ++i)
+                off = std::max(off, std::fabs(scaled[i].y - whole[i].y) / brightest);
+            INFO(kind << " in units of " << unit << ": off by " << off);
+            CHECK(off < 1e-6);
+        }
+    }
 }
 
 TEST_CASE("with the tolerance a map comes nearer to the truth, also where histories end",

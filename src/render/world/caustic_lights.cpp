@@ -59,7 +59,6 @@ BeamSource sample_source(const Light& light, const Kind& kind, std::size_t sampl
     } else {
         // Irradiance at distance 1, where it is the radiant intensity.
         source.position = kind.position;
-        if constexpr (requires { kind.samples; }) source.position = at(kind.position + kind.direction).target;
         source.strength = [at, color = light.color, from = source.position](const Vec3& direction) {
             return at(from + direction).irradiance * color;
         };
@@ -89,6 +88,17 @@ BeamSource sphere_part(const Light& light, const SphereLight& sphere, std::size_
     return source;
 }
 
+/// One sample's part of a rectangle or a disk: its rays start before the light, which is an object, too.
+template <typename Kind>
+BeamSource flat_part(const Light& light, const Kind& kind, std::size_t sample, double scene_size) {
+    const FlatPart part = part_of(kind, light.intensity, sample);
+    BeamSource source;
+    source.position = before_flat_light(part, scene_size);
+    source.strength = [normal = part.normal, light = part.area * part.radiance * light.color](
+                          const Vec3& direction) { return std::max(0.0, dot(normal, direction)) * light; };
+    return source;
+}
+
 std::vector<BeamSource> background_sources(const Light& light, const EnvironmentSamples& samples) {
     std::vector<BeamSource> sources;
     for (std::size_t i = 0; i < samples.toward.size(); ++i) {
@@ -103,7 +113,13 @@ std::vector<BeamSource> background_sources(const Light& light, const Environment
     return sources;
 }
 
-std::vector<BeamSource> sources_of(const Light& light, const Background&, const DirectionalLight& kind) {
+/// What sources are of, beside their light.
+struct SourceScene {
+    const Background& background;
+    double size = 1;
+};
+
+std::vector<BeamSource> sources_of(const Light& light, const SourceScene&, const DirectionalLight& kind) {
     std::vector<BeamSource> sources;
     const int count = kind.angle > 0 ? kind.samples : 1;
     for (int k = 0; k < count; ++k)
@@ -111,32 +127,35 @@ std::vector<BeamSource> sources_of(const Light& light, const Background&, const 
     return sources;
 }
 template <typename Kind>
-std::vector<BeamSource> sources_of(const Light& light, const Background&, const Kind& kind) {
+std::vector<BeamSource> sources_of(const Light& light, const SourceScene& scene, const Kind& kind) {
     std::vector<BeamSource> sources;
-    int count = 1;
-    if constexpr (requires { kind.samples; }) count = kind.samples;
-    for (int k = 0; k < count; ++k)
-        sources.push_back(sample_source(light, kind, static_cast<std::size_t>(k)));
+    if constexpr (requires { kind.samples; }) {
+        for (int k = 0; k < kind.samples; ++k)
+            sources.push_back(flat_part(light, kind, static_cast<std::size_t>(k), scene.size));
+    } else {
+        sources.push_back(sample_source(light, kind, 0));
+    }
     return sources;
 }
-std::vector<BeamSource> sources_of(const Light& light, const Background&, const SphereLight& kind) {
+std::vector<BeamSource> sources_of(const Light& light, const SourceScene&, const SphereLight& kind) {
     std::vector<BeamSource> sources;
     for (int k = 0; k < kind.samples; ++k)
         sources.push_back(sphere_part(light, kind, static_cast<std::size_t>(k)));
     return sources;
 }
-std::vector<BeamSource> sources_of(const Light& light, const Background& background,
+std::vector<BeamSource> sources_of(const Light& light, const SourceScene& scene,
                                    const EnvironmentLight& kind) {
-    return background_sources(light, environment_samples(background, kind.samples));
+    return background_sources(light, environment_samples(scene.background, kind.samples));
 }
-std::vector<BeamSource> sources_of(const Light&, const Background&, const AmbientLight&) {
+std::vector<BeamSource> sources_of(const Light&, const SourceScene&, const AmbientLight&) {
     return {};
 }
 
 }  // namespace
 
-std::vector<BeamSource> beam_sources(const Light& light, const Background& background) {
-    return std::visit([&](const auto& kind) { return sources_of(light, background, kind); }, light.kind);
+std::vector<BeamSource> beam_sources(const Light& light, const Background& background, double scene_size) {
+    const SourceScene scene{background, scene_size};
+    return std::visit([&](const auto& kind) { return sources_of(light, scene, kind); }, light.kind);
 }
 
 bool has_caustics(const World& world) {
@@ -152,7 +171,8 @@ PathWorld optics_for_lights(const World& world) {
 std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, const PathWorld& optics,
                                                          std::size_t light, const BeamGridParams& params,
                                                          const Progress& progress) {
-    const std::vector<BeamSource> sources = beam_sources(world.scene.lights[light], world.scene.background);
+    const std::vector<BeamSource> sources =
+        beam_sources(world.scene.lights[light], world.scene.background, world.shading.size);
     if (sources.empty())
         throw UsageError("light " + std::to_string(light) + " is " + kind_name(world.scene.lights[light]) +
                          ", which has no caustics");
@@ -203,7 +223,9 @@ std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const Bea
     const std::vector<Light>& all = world.scene.lights;
     std::vector<std::size_t> samples;  // by light, of those that are followed
     for (const Light& light : all)
-        samples.push_back(has_followed_light(light) ? beam_sources(light, world.scene.background).size() : 0);
+        samples.push_back(has_followed_light(light)
+                              ? beam_sources(light, world.scene.background, world.shading.size).size()
+                              : 0);
     const auto count = std::accumulate(samples.begin(), samples.end(), 0.0);
     double done = 0;
     for (std::size_t l = 0; l < all.size(); ++l) {

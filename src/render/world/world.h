@@ -176,8 +176,9 @@ struct CausticLights {
 };
 
 /// The light as sources whose rays start in a point or are parallel: its samples, of a sphere parts of its
-/// surface; none for ambient light. `background`: what an environment's light is of.
-std::vector<BeamSource> beam_sources(const Light& light, const Background& background);
+/// surface; none for ambient light. `background`: what an environment's light is of. `scene_size`: in world
+/// units; rays of flat lights start a small share of it before them.
+std::vector<BeamSource> beam_sources(const Light& light, const Background& background, double scene_size);
 
 /// Whether any light is followed over optics.
 bool has_caustics(const World& world);
