@@ -115,6 +115,44 @@ TEST_CASE("glass that lies on a mirror: light is mirrored in the glass, and come
     }
 }
 
+TEST_CASE("bodies whose faces fall together have one interface there, that of the one that is inside",
+          "[paths][law]") {
+    // A tank that is filled to its brim, from above: air meets water; from below: water meets air.
+    const double brim = kTouch, shares_of_glass = std::pow((kUpper - 1) / (kUpper + 1), 2),
+                 share_of_water = std::pow((kLower - 1) / (kLower + 1), 2);
+    Random random(86);
+    for (const bool tank_first : {true, false})
+        for (const bool filled : {true, false}) {
+            Stage stage;
+            const auto add_tank = [&] {
+                return stage.add_body(make_box({-9, -0.9, -9}, {9, brim, 9}), glass_of(kUpper), 0);
+            };
+            Id tank = tank_first ? add_tank() : kNone;
+            const Id water =
+                stage.add_body(make_box({-8, -0.4, -8}, {8, brim, 8}), glass_of(kLower), filled ? 1 : -1);
+            if (!tank_first) tank = add_tank();
+            const Id inside = filled ? water : tank;
+            for (int i = 0; i < 200; ++i) {
+                const Vec3 from(random.uniform(-1, 1), random.uniform(1, 3), random.uniform(-1, 1));
+                const auto paths = stage.follow(from, Vec3(0, -1, 0));
+                REQUIRE(paths);
+                double reflected = 0;
+                int above = 0;
+                for (const PathSegment& segment : paths->segments)
+                    if (segment.ray.direction.y > 0 && segment.way < from.y - brim + 1e-6) {
+                        ++above;
+                        reflected += segment.first_weight.y * segment.weight.y;
+                    }
+                CHECK(above == 1);
+                CHECK(reflected == Approx(filled ? share_of_water : shares_of_glass).epsilon(1e-9));
+                const auto way = straight_through(*paths);
+                REQUIRE(way.size() >= 2);
+                CHECK(way[1].medium == inside);
+                CHECK(way[1].way == Approx(from.y - brim).margin(1e-6));
+            }
+        }
+}
+
 TEST_CASE("a table under a slab that lies on it is seen through the slab by every ray", "[paths][law]") {
     Stage stage;
     stage.add_body(make_box({-9, kTouch, -9}, {9, 0.7, 9}), glass_of(kUpper));

@@ -249,9 +249,8 @@ std::optional<NextOptic> meet(const PathWorld& world, Id optic, const LeavingRay
     return next_at(optic, ray, *hit, touch);
 }
 
-/// Among optics that are met at the same place.
-int turn_of(const PathWorld& world, const NextOptic& next) {
-    return coincident_order(world.optics[next.meeting.optic].mirror, next.meeting.front);
+std::pair<int, int> turn_of(const PathWorld& world, const NextOptic& next) {
+    return coincident_order(world.optics[next.meeting.optic], next.meeting.front);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "paths/trace/path_world.h"
@@ -136,14 +137,16 @@ struct LeavingRay {
 };
 
 /// Among optics that are met at the same place the one with the least comes first: mirrors, then bodies that
-/// the ray comes into by their front, then those that it leaves.
-constexpr int coincident_order(bool mirror, bool front) {
-    return mirror ? 0 : front ? 1 : 2;
+/// the ray comes into by their front, those of the highest priority first, then those that it leaves, those
+/// of the highest priority last. So there is one interface, that of the glass before with the glass behind.
+constexpr std::pair<int, int> coincident_order(const PathOptic& optic, bool front) {
+    if (optic.mirror) return {0, 0};
+    return {front ? 1 : 2, front ? -optic.priority : optic.priority};
 }
 
-/// Optics that touch, to 1e-9 of their sizes, are met one after the other, at no distance: mirrors first,
-/// then bodies that the ray comes into, then those that it leaves. So bodies that touch have no air between
-/// them, and light that comes through a body to a mirror on it is mirrored in the body.
+/// Optics that touch, to 1e-9 of their sizes, are met one after the other, at no distance, in the order of
+/// coincident_order and then of the scene. So bodies that touch have no air between them, and light that
+/// comes through a body to a mirror on it is mirrored in the body.
 std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& leaving);
 
 // Where a camera sees a point over one history, exactly: Newton's method on the film.

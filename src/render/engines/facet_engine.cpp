@@ -158,10 +158,10 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
 bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleViews& views,
                               const SampleView& view) const {
     const SurfaceGrid& grid = frame_.optics[index].facets->grid();
-    const int own = coincident_order(world_.optics[index].mirror,
-                                     faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
-    const int other =
-        coincident_order(world_.optics[view.optic].mirror, views.on_optic(view).incidence.front);
+    const auto own = coincident_order(path_world(world_).optics[index],
+                                      faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
+    const auto other =
+        coincident_order(path_world(world_).optics[view.optic], views.on_optic(view).incidence.front);
     return own < other || (own == other && index < view.optic);
 }
 

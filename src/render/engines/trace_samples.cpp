@@ -15,14 +15,13 @@ FirstSurface first_surface(const PathWorld& world, const Tracer& objects, const 
     first.object = objects.first_hit(ray);
     if (first.object.seen() && first.object.t > reach) first.object = {};
     const auto turn = [&](std::size_t optic, const SurfaceHit& hit) {
-        return coincident_order(world.optics[optic].mirror, dot(hit.point.normal, ray.direction) <= 0);
+        return coincident_order(world.optics[optic], dot(hit.point.normal, ray.direction) <= 0);
     };
     const auto comes_first = [&](std::size_t optic, const SurfaceHit& hit) {
         if (first.optic == kNone) return true;
         const double touch = world.optics[optic].tracer->self_hit_t_min(ray);
         if (std::fabs(hit.t - first.at.t) > touch) return hit.t < first.at.t;
-        const int own = turn(optic, hit), other = turn(first.optic, first.at);
-        return own < other || (own == other && hit.t < first.at.t);
+        return turn(optic, hit) < turn(first.optic, first.at);
     };
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
         const PathOptic& optic = world.optics[i];
