@@ -64,6 +64,14 @@ def test_masked_values_are_refused():
     assert trilens.Image.from_arrays({"R": np.ma.masked_array(np.ones((2, 2), np.float32))}).size == (2, 2)
 
 
+def test_texts_are_no_numbers():
+    renderer = trilens.Renderer(sphere())
+    with pytest.raises(trilens.UsageError, match="texts"):
+        renderer.project([["1", "1", "2"]])
+    with pytest.raises(trilens.UsageError, match="texts"):
+        renderer.project(np.array([[b"1", b"1", b"2"]]))
+
+
 def test_complex_numbers_are_refused():
     renderer = trilens.Renderer(sphere())
     with pytest.raises(trilens.UsageError, match="complex"):
