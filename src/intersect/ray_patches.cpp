@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -143,6 +146,127 @@ Box box_of(const Surface& surface) {
     return box;
 }
 
+// Strays of quads, by those of the facets between their corners.
+
+namespace {
+
+/// A rectangle of parameters, whole and once covered by facets to this share of its area.
+constexpr double kWholeRoom = 1e-9;
+
+struct Rectangle {
+    Vec2 low{std::numeric_limits<double>::infinity()}, high{-low};
+
+    Vec2 corner(std::size_t k) const {
+        return {k == 1 || k == 2 ? high.x : low.x, k == 2 || k == 3 ? high.y : low.y};
+    }
+    /// Whether the place lies on the side from corner k to the next.
+    bool is_on_side(std::size_t k, const Vec2& uv) const {
+        const int across = k % 2 == 0 ? 1 : 0;
+        return uv[across] == corner(k)[across];
+    }
+    double area() const { return (high.x - low.x) * (high.y - low.y); }
+};
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+    const Vec3 way = b - a;
+    const double squared = dot(way, way);
+    const double share = squared > 0 ? std::clamp(dot(p - a, way) / squared, 0.0, 1.0) : 0.0;
+    return length(p - (a + share * way));
+}
+
+/// Not below the distance to the hull of the corners: that to a point of it, of the bilinear patch between
+/// them, near the one whose place in the rectangle is `share`.
+double distance_to_hull(const Vec3& p, const std::array<Vec3, PartQuad::kSides>& corner, Vec2 share) {
+    const auto along_u = [&](double v) {
+        return (1 - v) * (corner[1] - corner[0]) + v * (corner[2] - corner[3]);
+    };
+    const auto along_v = [&](double u) {
+        return (1 - u) * (corner[3] - corner[0]) + u * (corner[2] - corner[1]);
+    };
+    const auto off_at = [&](const Vec2& at) {
+        return p - (corner[0] + at.x * (corner[1] - corner[0]) + at.y * along_v(at.x));
+    };
+    const Vec3 off = off_at(share), du = along_u(share.y), dv = along_v(share.x);
+    const double uu = dot(du, du), uv = dot(du, dv), vv = dot(dv, dv), area = uu * vv - uv * uv;
+    const double least = length(off);
+    const Vec2 step =
+        Vec2(vv * dot(off, du) - uv * dot(off, dv), uu * dot(off, dv) - uv * dot(off, du)) / area;
+    if (!std::isfinite(step.x) || !std::isfinite(step.y)) return least;
+    return std::min(least, length(off_at(glm::clamp(share + step, 0.0, 1.0))));
+}
+
+/// The border from corner c to the next.
+void add_side(std::span<const RayPatch> patches, const Rectangle& all, std::size_t c, PartQuad& quad) {
+    const Vec3 &first = quad.corner[c], &last = quad.corner[(c + 1) % PartQuad::kSides];
+    const int along = c % 2 == 0 ? 0 : 1;
+    std::map<double, Vec3> places;
+    for (const RayPatch& patch : patches)
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!all.is_on_side(c, patch.uv[k])) continue;
+            places.emplace(c < 2 ? patch.uv[k][along] : -patch.uv[k][along], patch.corner[k]);
+            quad.border =
+                std::max(quad.border, patch.stray + distance_to_segment(patch.corner[k], first, last));
+            quad.outline_stray = std::max(quad.outline_stray, patch.stray);
+        }
+    places.erase(std::prev(places.end()));  // the next side's first
+    for (const auto& [place, point] : places) quad.outline.push_back(point);
+}
+
+}  // namespace
+
+PartQuad make_part_quad(std::span<const RayPatch> patches) {
+    Rectangle all;
+    double covered = 0;
+    for (const RayPatch& patch : patches) {
+        for (const Vec2& uv : patch.uv) all.low = glm::min(all.low, uv), all.high = glm::max(all.high, uv);
+        covered += 0.5 * std::fabs(cross(patch.uv[1] - patch.uv[0], patch.uv[2] - patch.uv[0]));
+    }
+    PartQuad quad;
+    if (patches.empty() || !(std::fabs(covered - all.area()) <= kWholeRoom * all.area())) return quad;
+    for (std::size_t f = 0; f < patches.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t c = 0; c < PartQuad::kSides; ++c)
+                if (patches[f].uv[k] == all.corner(c)) quad.corner[c] = patches[f].corner[k];
+    for (std::size_t c = 0; c < PartQuad::kSides; ++c)
+        quad.side[c] = length(quad.corner[(c + 1) % PartQuad::kSides] - quad.corner[c]);
+
+    quad.border = quad.stray = 0;
+    for (const RayPatch& patch : patches)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2 share = (patch.uv[k] - all.low) / (all.high - all.low);
+            quad.stray =
+                std::max(quad.stray, patch.stray + distance_to_hull(patch.corner[k], quad.corner, share));
+        }
+    for (std::size_t c = 0; c < PartQuad::kSides; ++c) add_side(patches, all, c, quad);
+    return quad;
+}
+
+bool surely_meets(const PartQuad& quad, const RayFrame& frame, double from, double to) {
+    if (quad.outline.empty()) return false;
+    for (const Vec3& corner : quad.corner) {
+        const double z = dot(frame.z, corner - frame.origin);
+        if (!(z - quad.stray > from && z + quad.stray < to)) return false;
+    }
+    const auto seen = [&](const Vec3& place) {
+        const Vec3 local = place - frame.origin;
+        return Vec2(dot(frame.x, local), dot(frame.y, local));
+    };
+    int turns = 0;
+    Vec2 a = seen(quad.outline.back());
+    for (const Vec3& place : quad.outline) {
+        const Vec2 b = seen(place), way = b - a;
+        const double squared = dot(way, way);
+        const double share = squared > 0 ? std::clamp(-dot(a, way) / squared, 0.0, 1.0) : 0.0;
+        const Vec2 nearest = a + share * way;
+        if (!(dot(nearest, nearest) > quad.outline_stray * quad.outline_stray)) return false;
+        const bool up = a.y <= 0 && b.y > 0, down = a.y > 0 && b.y <= 0;
+        if (up && cross(a, b) > 0) ++turns;
+        if (down && cross(a, b) < 0) --turns;
+        a = b;
+    }
+    return turns != 0;
+}
+
 const PartPatches::Part& PartPatches::make(Id part) const {
     const SurfaceGrid grid = grid_(part);
     TRILENS_CHECK(grid.facets.size() <= kMostOfPart, "a part has few facets");
@@ -155,6 +279,7 @@ const PartPatches::Part& PartPatches::make(Id part) const {
         made->patches.push_back(make_patch_between(surface_, grid, f, middles));
         made->balls.set(f, ball_of(made->patches.back()));
     }
+    made->quad = make_part_quad(made->patches);
     // Another thread may have made the same meanwhile.
     const Part* known = nullptr;
     if (parts_[part].compare_exchange_strong(known, made.get())) return *made.release();

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -65,6 +67,30 @@ class PatchBalls {
     std::vector<double> rows_;
 };
 
+// A part of a face as a whole: the quad between its corners, its outline, and how far it strays from both.
+
+/// Of a rectangle of a face's parameters. Infinite strays say nothing.
+struct PartQuad {
+    static constexpr std::size_t kSides = 4;
+
+    std::array<Vec3, kSides> corner{};  // in turn; side k runs from corner k to the next
+    std::array<double, kSides> side{};  // lengths
+    // Each side of the part's border lies within this distance of the quad's.
+    double border = std::numeric_limits<double>::infinity();
+    // The part lies within this distance of the corners' hull.
+    double stray = std::numeric_limits<double>::infinity();
+
+    std::vector<Vec3> outline;  // the border's corners of facets, in turn; none where nothing is known
+    double outline_stray = 0;   // the border lies within this distance of the outline
+};
+
+/// Of all of its facets; says nothing where they are no whole rectangle of one face's parameters.
+PartQuad make_part_quad(std::span<const RayPatch> patches);
+
+/// Whether the part is surely met, and nowhere but between these distances along the ray: its outline goes
+/// around the ray, and farther from it than the border strays.
+bool surely_meets(const PartQuad& quad, const RayFrame& frame, double from, double to);
+
 /// A stretch of a ray, by distances along it.
 struct RayStretch {
     Vec3 origin{0}, direction{0};  // unit
@@ -90,6 +116,7 @@ class PartPatches {
     struct Part {
         std::vector<RayPatch> patches;
         PatchBalls balls;
+        PartQuad quad;
     };
 
     const Part& of(Id part) const {
