@@ -17,8 +17,8 @@ struct Bulge {
 
 /// A quadratic leaves the hull by at most a quarter of d, the way from a side's chord to its middle. With
 /// rays o + t v that is do + t dv but for what their lengths to the plane differ, S, times how their
-/// directions do; S is at most 2/3 of the shortest and a third of the beam's width (falls_evenly). Rounded
-/// up.
+/// directions do; S is at most 2/3 of the shortest and three times the beam's width (CurvedBeam::fall).
+/// Rounded up.
 Bulge bulge_of(const std::array<const BeamEnd*, 3>& end, const std::array<const BeamEnd*, 3>& middle) {
     const Vec3 mean = (end[0]->direction + end[1]->direction + end[2]->direction) / 3.0;
     double origins = 0, directions = 0, wide = 0, apart = 0;
@@ -29,7 +29,7 @@ Bulge bulge_of(const std::array<const BeamEnd*, 3>& end, const std::array<const 
         wide = std::max(wide, length(a.origin - b.origin));
         apart = std::max({apart, length(a.direction - mean), length(m.direction - mean)});
     }
-    return {0.5 * (origins + wide * (apart + directions)), 0.5 * (apart + directions)};
+    return {0.5 * origins + 2.5 * wide * (apart + directions), 0.5 * (apart + directions)};
 }
 
 }  // namespace

@@ -6,19 +6,29 @@
 namespace trilens {
 namespace {
 
-/// How much longer one of a beam's rays to a plane may be than another for a quadratic to be its image: the
-/// tree's bulge_of counts on it.
-constexpr double kMostUneven = 5.0 / 3;
+/// How much longer one of a beam's rays to a plane may be than another for a quadratic to be its image, and by
+/// how many times the beam's width: the tree's bulge_of counts on both.
+constexpr double kMostUneven = 5.0 / 3, kMostLonger = 3;
+/// And where it is called nearly alike.
+constexpr double kHardlyLonger = 1.0 / 3;
 
 double length_to(const ReceiverPlane& plane, const BeamEnd& end) {
     return dot(end.origin - plane.point, plane.normal) / -dot(end.direction, plane.normal);
+}
+
+/// Of where it leaves the last optic.
+double width_of(const BeamCorners& corners) {
+    double wide = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        wide = std::max(wide, length(corners.end[k]->origin - corners.end[(k + 1) % 3]->origin));
+    return wide;
 }
 
 }  // namespace
 
 std::optional<std::array<Vec2, 6>> CurvedBeam::fall(const ReceiverPlane& plane) const {
     std::array<Vec2, 6> at;
-    double shortest = INFINITY, longest = 0, wide = 0;
+    double shortest = INFINITY, longest = 0;
     for (std::size_t k = 0; k < 6; ++k) {
         const BeamEnd& end = k < 3 ? *corners.end[k] : *middle[k - 3];
         if (!(-dot(end.direction, plane.normal) > kGrazingFall)) return std::nullopt;
@@ -27,10 +37,17 @@ std::optional<std::array<Vec2, 6>> CurvedBeam::fall(const ReceiverPlane& plane) 
         at[k] = plane.at(end.origin + t * end.direction);
         shortest = std::min(shortest, t), longest = std::max(longest, t);
     }
-    for (std::size_t k = 0; k < 3; ++k)
-        wide = std::max(wide, length(corners.end[k]->origin - corners.end[(k + 1) % 3]->origin));
-    if (longest > kMostUneven * shortest + wide / 3) return std::nullopt;
+    if (longest > kMostUneven * shortest + kMostLonger * width_of(corners)) return std::nullopt;
     return at;
+}
+
+bool CurvedBeam::falls_evenly(const ReceiverPlane& plane) const {
+    double shortest = INFINITY, longest = 0;
+    for (const BeamEnd* end : corners.end) {
+        const double way = length_to(plane, *end);
+        shortest = std::min(shortest, way), longest = std::max(longest, way);
+    }
+    return longest <= kMostUneven * shortest + kHardlyLonger * width_of(corners);
 }
 
 std::array<double, 3> shares_of(const std::array<Vec2, 6>& at, const FallenBeam& piece, double pieces) {

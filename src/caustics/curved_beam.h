@@ -29,6 +29,10 @@ struct CurvedBeam {
     /// plane lies so askew that a quadratic says nothing.
     std::optional<std::array<Vec2, 6>> fall(const ReceiverPlane& plane) const;
 
+    /// Whether the ways from the last optic to a plane on which it falls are nearly alike, so that the optic
+    /// hardly stands in the way of a part of it.
+    bool falls_evenly(const ReceiverPlane& plane) const;
+
     /// Of the ends and then of the middles: times how much more of the light's film a unit of places is there
     /// than in the beam's mean, since pieces are equal in places.
     std::array<Vec3, 6> lights() const;

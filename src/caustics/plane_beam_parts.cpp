@@ -22,10 +22,15 @@ constexpr double kFaintFlat = 0.002;
 constexpr double kBright = 60, kLeastRoom = 1e-3, kMostRoom = 4;
 /// Beams are in pieces as if the tolerance were so many times what they may be off by, where that is less.
 constexpr double kPiecesOff = 4;
-/// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, and its
-/// quarters' areas and its light differ.
-constexpr double kOneBends = 0.02, kOneDiffers = 0.03;
-constexpr double kFourBend = 0.08, kFourDiffer = 0.12;
+/// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, its light from
+/// linear, and its quarters' areas differ, which pieces follow.
+constexpr double kOneBends = 0.02, kOneDiffers = 0.03, kOneUneven = 0.12;
+constexpr double kFourBend = 0.08, kFourDiffer = 0.12, kFourUneven = 0.4;
+/// Sides of beams that are not so many times brighter than what is faint may bend more by as much, at most so
+/// many times.
+constexpr double kDim = 20, kMostDim = 12;
+/// As beams of few pieces have it, light is no brighter than so many times its mean, nor less bright.
+constexpr double kMostDense = 2;
 
 double sum_of(const Vec3& light) {
     return light.x + light.y + light.z;
@@ -118,6 +123,10 @@ struct PlaneBeams::PartsMaker {
         const double room = room_of(beam, *at);
         if (bulge > kNearlyStraight * room && level < kMostHalvings && is_off(end, middle, *at, room))
             return add_parts(end, middle, level);
+        // Where the last optic may stand in the way of a part of it.
+        if (level < kMostCuts && !beam.falls_evenly(plane) && way_of(end, level) == Way::kUnknown &&
+            !is_faint(beam.corners))
+            return add_parts(end, middle, level);
         add_curved(beam, *at, std::min(params.tolerance, kPiecesOff * room), level);
     }
 
@@ -147,23 +156,31 @@ struct PlaneBeams::PartsMaker {
         return std::clamp(all / std::min(std::fabs(least), std::fabs(most)), 1.0, at_fold);
     }
 
-    /// How far it may be off.
-    double room_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at) const {
+    static double strength_of_brightest(const CurvedBeam& beam) {
         double strength = 0;
         for (std::size_t k = 0; k < 3; ++k)
             strength =
                 std::max({strength, sum_of(beam.corners.end[k]->light), sum_of(beam.middle[k]->light)});
-        const double area = 0.5 * std::fabs(cross(at[1] - at[0], at[2] - at[0]));
-        const double brightness =
-            (params.is_alone ? peak(at) : 1) * strength * beam.corners.measure / (params.faint_light * area);
-        if (brightness < 1) return INFINITY;
-        return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength) *
-               std::clamp(kBright / brightness, kLeastRoom, kMostRoom);
+        return strength;
     }
 
-    /// How much its quarters' areas differ from a quarter, and its light from linear, as shares.
-    static double unevenness(const FallenCurve& curve) {
-        const auto& at = curve.at;
+    /// How many times brighter it is, in the mean, than what is faint.
+    double brightness(const CurvedBeam& beam, const std::array<Vec2, 6>& at) const {
+        const double area = 0.5 * std::fabs(cross(at[1] - at[0], at[2] - at[0]));
+        return strength_of_brightest(beam) * beam.corners.measure / (params.faint_light * area);
+    }
+
+    /// How far it may be off.
+    double room_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at) const {
+        const double brightest = (params.is_alone ? peak(at) : 1) * brightness(beam, at);
+        if (brightest < 1) return INFINITY;
+        return params.tolerance *
+               std::max(kMostOff, kFaintOff * params.brightest / strength_of_brightest(beam)) *
+               std::clamp(kBright / brightest, kLeastRoom, kMostRoom);
+    }
+
+    /// How much its quarters' areas differ from a quarter, as a share.
+    static double unevenness(const std::array<Vec2, 6>& at) {
         const double all = cross(at[1] - at[0], at[2] - at[0]);
         double most = 0;
         const std::size_t quarter[4][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}, {3, 4, 5}};
@@ -171,26 +188,61 @@ struct PlaneBeams::PartsMaker {
             const double area = cross(at[q[1]] - at[q[0]], at[q[2]] - at[q[0]]);
             most = std::max(most, std::fabs(4 * area / all - 1));
         }
-        double brightest = 0, bends = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double a = sum_of(curve.light[(k + 1) % 3]), b = sum_of(curve.light[(k + 2) % 3]),
-                         m = sum_of(curve.light[3 + k]);
-            brightest = std::max({brightest, a, m}), bends = std::max(bends, std::fabs(m - 0.5 * (a + b)));
-        }
-        return brightest > 0 ? std::max(most, bends / brightest) : most;
+        return most;
     }
 
-    static int sides_of(const FallenCurve& curve, double bulge, double tolerance) {
-        const double uneven = unevenness(curve);
-        if (bulge <= kOneBends * tolerance && uneven <= kOneDiffers) return 1;
-        return bulge <= kFourBend * tolerance && uneven <= kFourDiffer ? 2 : 4;
+    /// How much its light differs from linear, as a share.
+    static double difference(const std::array<Vec3, 6>& light) {
+        double brightest = 0, bends = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double a = sum_of(light[(k + 1) % 3]), b = sum_of(light[(k + 2) % 3]),
+                         m = sum_of(light[3 + k]);
+            brightest = std::max({brightest, a, m}), bends = std::max(bends, std::fabs(m - 0.5 * (a + b)));
+        }
+        return brightest > 0 ? bends / brightest : 0;
+    }
+
+    /// `tolerance`: of its sides' bends.
+    static int sides_of(const FallenCurve& curve, double tolerance) {
+        const double bulge = bulge_on_plane(curve.at), uneven = unevenness(curve.at),
+                     differs = difference(curve.light);
+        if (bulge <= kOneBends * tolerance && uneven <= kOneUneven && differs <= kOneDiffers) return 1;
+        return bulge <= kFourBend * tolerance && uneven <= kFourUneven && differs <= kFourDiffer ? 2 : 4;
+    }
+
+    /// Of one in few pieces: as its quadratic spreads its light.
+    static void spread_light(Curved& one) {
+        const std::array<Vec2, 6>& at = one.curve.at;
+        const PieceGrid& grid = PieceGrid::of(one.sides);
+        double all = 0;
+        for (std::size_t p = 0; p < grid.pieces; ++p) {
+            std::array<Vec2, 3> corner{};
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t c = 0; c < 6; ++c) corner[k] += grid.quadratic[grid.piece[p][k]][c] * at[c];
+            all += one.part[p] = std::fabs(cross(corner[1] - corner[0], corner[2] - corner[0]));
+        }
+        for (std::size_t p = 0; p < grid.pieces; ++p) one.part[p] *= static_cast<double>(grid.pieces) / all;
+        for (std::size_t k = 0; k < 6; ++k)
+            one.spread[k] *=
+                std::clamp(all / std::fabs(quadratic_spread(at, kNodes[k])), 1 / kMostDense, kMostDense);
+        Vec3 mean(0);
+        for (std::size_t p = 0; p < grid.pieces; ++p)
+            for (const std::size_t n : grid.piece[p])
+                for (std::size_t c = 0; c < 6; ++c)
+                    mean += one.part[p] / (3.0 * static_cast<double>(grid.pieces)) * grid.quadratic[n][c] *
+                            one.spread[c];
+        for (Vec3& light : one.spread)
+            for (int c = 0; c < 3; ++c) light[c] *= mean[c] > 0 ? one.mean_light[c] / mean[c] : 1;
     }
 
     void add_curved(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double tolerance, int level) {
         Curved one{beam.corners, {at, beam.lights()}, index, way_of(beam.corners.end, level)};
         if (one.way == Way::kStopped) return;
-        one.sides = sides_of(one.curve, bulge_on_plane(at), tolerance);
+        const double dim = std::clamp(kDim / brightness(beam, at), 1.0, kMostDim);
+        one.sides = sides_of(one.curve, dim * tolerance);
         one.mean_light = mean_light(one.curve.light, one.sides);
+        one.spread = one.curve.light;
+        if (one.sides < PieceGrid::kMostSides) spread_light(one);
         const LightBeam& of = source.beams.beams[index];
         one.is_plain = one.way == Way::kFree && source.beams.histories[of.history].medium == kNone;
         parts.curved.push_back(one);

@@ -121,13 +121,13 @@ Vec3 PlaneBeams::light_of(const Curved& one, const std::array<Vec2, 6>& at) {
     for (std::size_t p = 0; p < grid.pieces; ++p) {
         if (!(cut.share[p] > 0)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
-            const double weight = cut.share[p] * cut.weight[k][p];
+            const double weight = cut.share[p] * one.part_of(p) * cut.weight[k][p];
             const std::array<double, 6>& quadratic = grid.quadratic[grid.piece[p][k]];
             for (std::size_t c = 0; c < 6; ++c) weights[c] += weight * quadratic[c];
         }
     }
     Vec3 light(0);
-    for (std::size_t c = 0; c < 6; ++c) light += weights[c] * one.curve.light[c];
+    for (std::size_t c = 0; c < 6; ++c) light += weights[c] * one.spread[c];
     return measure / static_cast<double>(grid.pieces) * light;
 }
 

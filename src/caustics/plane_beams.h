@@ -68,6 +68,12 @@ class PlaneBeams {
         int sides = 4;          // of its pieces
         bool is_plain = false;  // all of it comes, through air
         Vec3 mean_light{0};
+        // Of at most four pieces: each one's share of the film over the mean share, as their areas are, and
+        // the light that they have then, at the ends and middles. Of 16 pieces all are alike, and so is the
+        // curve's.
+        std::array<double, 4> part{1, 1, 1, 1};
+        std::array<Vec3, 6> spread{};
+        double part_of(std::size_t piece) const { return sides < PieceGrid::kMostSides ? part[piece] : 1; }
     };
     struct Flat {  // what the plane cuts, or lies askew to
         BeamCorners corners;
@@ -169,10 +175,10 @@ void PlaneBeams::use_parts(const Curved& one, const std::array<Vec2, 6>& at, con
             const std::size_t n = grid.piece[p][k];
             fallen.weights[k] = grid.weights[n];
             fallen.light[k] = Vec3(0);
-            for (std::size_t c = 0; c < 6; ++c) fallen.light[k] += grid.quadratic[n][c] * one.curve.light[c];
+            for (std::size_t c = 0; c < 6; ++c) fallen.light[k] += grid.quadratic[n][c] * one.spread[c];
         }
         use(one.index, one.way, one.corners, fallen,
-            FootprintPart{cut.share[p] * measure,
+            FootprintPart{cut.share[p] * one.part_of(p) * measure,
                           Vec3(cut.weight[0][p], cut.weight[1][p], cut.weight[2][p])});
     }
 }
