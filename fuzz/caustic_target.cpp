@@ -1,5 +1,6 @@
 // Fuzz target of caustics: random scenes whose lights are followed over their optics; light is neither made
-// nor given to two, and the picture is the same with any number of threads.
+// nor given to two, an optic that stands twice gives the light of one, and the picture is the same with any
+// number of threads.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,6 +90,40 @@ void require_maps(const Renderer& renderer, const Scene& scene) {
     }
 }
 
+/// How much of a map's light an optic's twin may move: its beams have other histories.
+constexpr double kByTwin = 0.05;
+
+/// The first light's map, as the optic has it alone and with its twin at the same place.
+void require_same_by_twins(const Renderer& renderer, Scene scene) {
+    const auto optic = std::ranges::find(scene.meshes, Role::kOptic, &Mesh::role);
+    const auto object = std::ranges::find(scene.meshes, Role::kObject, &Mesh::role);
+    if (optic == scene.meshes.end() || object == scene.meshes.end()) return;
+    CausticMapRequest request;
+    request.target.kind = TargetKind::kObject;
+    request.target.object = static_cast<Id>(object - scene.meshes.begin());
+    request.target.width = request.target.height = 8;
+    request.tolerance = 0.02;
+    Mesh twin = *optic;
+    twin.name += " twin";
+    scene.meshes.push_back(std::move(twin));
+    const Renderer twins(scene);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        if (is_dome(scene.lights[i])) continue;
+        request.light = i;
+        answer([&] {
+            const CausticMap one = make_caustic_map(renderer, request),
+                             two = make_caustic_map(twins, request);
+            for (int c = 0; c < 3; ++c) {
+                const double off = std::fabs(two.flux_received[c] - one.flux_received[c]);
+                require(off <= kByTwin * one.flux_in[c],
+                        fmt::format("light of twins: {} of {}, alone {}", two.flux_received[c],
+                                    one.flux_in[c], one.flux_received[c]));
+            }
+        });
+        return;
+    }
+}
+
 }  // namespace
 
 Answer random_caustics(std::string_view bytes) {
@@ -100,6 +135,7 @@ Answer random_caustics(std::string_view bytes) {
             const Renderer renderer(scene);
             require_picture(renderer);
             require_maps(renderer, scene);
+            require_same_by_twins(renderer, scene);
         } catch (const ComputationError& error) {  // a legal scene has a picture
             throw Defect(std::string("a scene that was read is not drawn: ") + error.what());
         }

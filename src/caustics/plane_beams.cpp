@@ -59,16 +59,18 @@ PlaneBeamsParams params_on_face(PlaneBeamsParams params, const FaceLight& light)
 }  // namespace
 
 Way way_to(const BeamEnds& ends, const ReceiverPlane& plane, double same_place) {
-    int free = 0, stopped = 0;
+    int free = 0, there = 0, stopped = 0;
     for (const BeamEnd* end : ends) {
         const double fall = -dot(end->direction, plane.normal);
         const double t = dot(end->origin - plane.point, plane.normal) / fall;
         if (!(fall > 0)) return Way::kUnknown;
-        const double before = t - same_place / fall;
-        if (end->object > 0 && end->object >= before && end->optic >= before) ++free;
+        const double near = same_place / fall;
+        if (end->object > 0 && end->object >= t - near && end->optic >= t - near) ++free;
+        if (std::fabs(end->object - t) <= near) ++there;
         if (end->optic < t) ++stopped;
     }
-    return free == 3 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
+    // Where no ray meets what lies in the plane, an object that all go past may hide its own back.
+    return free == 3 && there > 0 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
 }
 
 PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec3& normal,
