@@ -119,6 +119,42 @@ TEST_CASE("two exposures make one panorama of high dynamic range", "[inverse]") 
     }
 }
 
+TEST_CASE("lamps smaller than a panorama's pixel keep their light over two exposures, and masks hide them",
+          "[inverse][law]") {
+    const auto world = ball_under_sky(128, 128, 4, 256);
+    auto bright = std::make_shared<Texture>(*photograph(*world)), mask = std::make_shared<Texture>(*bright);
+    std::fill(mask->rgb.begin(), mask->rgb.end(), 1.0f);
+    for (const int x : {40, 52, 61, 75, 88})
+        for (int c = 0; c < 3; ++c) {
+            const auto at = static_cast<std::size_t>(3 * ((40 + x / 3) * 128 + x) + c);
+            bright->rgb[at] = 500, mask->rgb[at] = 0;
+        }
+    const auto exposed = [&](double exposure) {
+        auto photo = std::make_shared<Texture>(*bright);
+        for (float& value : photo->rgb) value = std::min(1.0f, static_cast<float>(exposure) * value);
+        UnwrapPhoto shot{"photo", photo, 0};
+        shot.exposure = exposure, shot.white = 0.98;
+        return shot;
+    };
+    UnwrapPhoto masked{"photo", bright, 0};
+    masked.mask = mask;
+    const UnwrapRequest small = to_equirect(32);
+    const Unwrapped truth = unwrap(*world, small, {UnwrapPhoto{"photo", bright, 0}}),
+                    merged = unwrap(*world, small, {exposed(1), exposed(1e-3)}),
+                    hidden = unwrap(*world, small, {masked});
+    const auto& light = truth.image.find("G")->floats();
+    double lamps = 0, worst = 0, left = 0;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        lamps += light[i] > 2;
+        worst = std::max(worst, std::fabs(double{merged.image.find("G")->floats()[i]} - light[i]) /
+                                    std::max(1.0, double{light[i]}));
+        left = std::max(left, double{hidden.image.find("G")->floats()[i]});
+    }
+    CHECK(lamps >= 3);
+    CHECK(worst < 1e-4);
+    CHECK(left < 1.1);
+}
+
 TEST_CASE("forward by facets and backward by exact search meet with the square of the facets",
           "[inverse][law]") {
     // Places of the same directions through n x n facets, unrefined, against the exact ones.

@@ -29,23 +29,87 @@ Vec3 sample_bicubic(const Texture& photo, const Vec2& at) {
     return glm::max(sum, Vec3(0));
 }
 
-Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian) {
-    // A pixel of the photograph is a mean over itself already: variances of boxes add up (L^2 / 12).
-    std::array<int, 2> count{};
-    Mat2 sides = jacobian;
-    for (int k = 0; k < 2; ++k) {
-        const double whole = length(jacobian[k]), left = std::sqrt(std::max(0.0, whole * whole - 1));
-        sides[k] = whole > 1 ? left / whole * jacobian[k] : Vec2(0);
-        count[static_cast<std::size_t>(k)] =
-            std::clamp(static_cast<int>(std::ceil(left - 0.25)), 1, kMostFootprint);
+namespace {
+
+/// The places whose bicubic samples make up the mean over a footprint.
+struct FootprintPlaces {
+    Vec2 at{0};
+    Mat2 sides{0};
+    int along = 1, down = 1;
+
+    /// A pixel of the photograph is a mean over itself already: variances of boxes add up (L^2 / 12).
+    FootprintPlaces(const Vec2& middle, const Mat2& jacobian) : at(middle), sides(jacobian) {
+        std::array<int, 2> count{};
+        for (int k = 0; k < 2; ++k) {
+            const double whole = length(jacobian[k]), left = std::sqrt(std::max(0.0, whole * whole - 1));
+            sides[k] = whole > 1 ? left / whole * jacobian[k] : Vec2(0);
+            count[static_cast<std::size_t>(k)] =
+                std::clamp(static_cast<int>(std::ceil(left - 0.25)), 1, kMostFootprint);
+        }
+        along = count[0], down = count[1];
     }
-    const auto [m, n] = count;
-    if (m == 1 && n == 1) return sample_bicubic(photo, at);
+
+    /// use(place)
+    template <typename Use>
+    void for_each(const Use& use) const {
+        if (along == 1 && down == 1) return use(at);
+        for (int j = 0; j < down; ++j)
+            for (int i = 0; i < along; ++i)
+                use(at + sides * Vec2((i + 0.5) / along - 0.5, (j + 0.5) / down - 0.5));
+    }
+};
+
+/// use(index of the pixel, its weight) for the sixteen pixels of a bicubic sample that have any.
+template <typename Use>
+void for_each_pixel(const Texture& photo, const Vec2& at, const Use& use) {
+    const double left = std::floor(at.x - 0.5), top = std::floor(at.y - 0.5);
+    const std::array<double, 4> across = catmull_rom(at.x - 0.5 - left), down = catmull_rom(at.y - 0.5 - top);
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) {
+            const double weight = across[static_cast<std::size_t>(i)] * down[static_cast<std::size_t>(j)];
+            if (weight == 0) continue;
+            const auto column = static_cast<std::size_t>(std::clamp(left + i - 1, 0.0, photo.width - 1.0)),
+                       row = static_cast<std::size_t>(std::clamp(top + j - 1, 0.0, photo.height - 1.0));
+            use(row * static_cast<std::size_t>(photo.width) + column, weight);
+        }
+}
+
+}  // namespace
+
+Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian) {
+    const FootprintPlaces places(at, jacobian);
+    if (places.along == 1 && places.down == 1) return sample_bicubic(photo, at);
     Vec3 sum{0};
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < m; ++i)
-            sum += sample_bicubic(photo, at + sides * Vec2((i + 0.5) / m - 0.5, (j + 0.5) / n - 0.5));
-    return sum / (double(m) * n);
+    places.for_each([&](const Vec2& place) { sum += sample_bicubic(photo, place); });
+    return sum / (double(places.along) * places.down);
+}
+
+float brightest_in_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian) {
+    float brightest = 0;
+    FootprintPlaces(at, jacobian).for_each([&](const Vec2& place) {
+        for_each_pixel(photo, place, [&](std::size_t pixel, double) {
+            const float* rgb = &photo.rgb[3 * pixel];
+            brightest = std::max({brightest, rgb[0], rgb[1], rgb[2]});
+        });
+    });
+    return brightest;
+}
+
+UsableMean sample_usable(const Texture& photo, const Texture& mask, const Vec2& at, const Mat2& jacobian) {
+    UsableMean mean;
+    double all = 0;
+    FootprintPlaces(at, jacobian).for_each([&](const Vec2& place) {
+        for_each_pixel(photo, place, [&](std::size_t pixel, double weight) {
+            all += weight;
+            if (mask.rgb[3 * pixel] < 0.5f) return;
+            const float* rgb = &photo.rgb[3 * pixel];
+            mean.colour += weight * Vec3(rgb[0], rgb[1], rgb[2]);
+            mean.share += weight;
+        });
+    });
+    mean.colour = mean.share > 0 ? glm::max(mean.colour / mean.share, Vec3(0)) : Vec3(0);
+    mean.share /= all;
+    return mean;
 }
 
 }  // namespace trilens

@@ -18,4 +18,15 @@ Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian
 
 inline constexpr int kMostFootprint = 32;
 
+/// The largest value, of any of the three colours, of the pixels that sample_footprint makes that mean of.
+float brightest_in_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian);
+
+/// The mean of the pixels that may be used.
+struct UsableMean {
+    Vec3 colour{0};
+    double share = 0;  // of the weights of all; a colour only where it is above 0
+};
+/// The same mean over the photograph's pixels at which `mask`, of its size, has red of 1/2 or more.
+UsableMean sample_usable(const Texture& photo, const Texture& mask, const Vec2& at, const Mat2& jacobian);
+
 }  // namespace trilens

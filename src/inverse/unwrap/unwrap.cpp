@@ -89,10 +89,10 @@ class PhotoDrawer {
         if (!place) return;
         std::vector<Candidate> seen;
         for (const MapImage& image : images) {
-            if (!may_take(image.position)) continue;
+            if (!may_take(image)) continue;
             Resolution r = resolution_of(image.jacobian, place->dx, place->dy);
             if (place->is_direction) r = {glm::radians(r.least), glm::radians(r.most)};
-            if (r.least >= request_.min_resolution) seen.push_back({&image, r, rank_of(image.position, r)});
+            if (r.least >= request_.min_resolution) seen.push_back({&image, r, rank_of(image, r)});
         }
         const std::size_t at = static_cast<std::size_t>(py) * canvas.width + static_cast<std::size_t>(px);
         canvas.count[at] += static_cast<Id>(seen.size());
@@ -104,28 +104,25 @@ class PhotoDrawer {
     }
 
   private:
-    bool may_take(const Vec2& at) const {
-        if (!photo_.mask) return true;
-        const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, photo_.mask->width - 1.0));
-        const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, photo_.mask->height - 1.0));
-        return photo_.mask->rgb[3 * (y * static_cast<std::size_t>(photo_.mask->width) + x)] >= 0.5f;
+    bool may_take(const MapImage& image) const {
+        return !photo_.mask ||
+               sample_usable(*photo_.picture, *photo_.mask, image.position, image.jacobian).share >= 0.5;
     }
 
-    /// Longer exposures are less noisy; clipped pixels come last.
-    double rank_of(const Vec2& at, const Resolution& resolution) const {
+    /// Longer exposures are less noisy; what has clipped pixels in it comes last.
+    double rank_of(const MapImage& image, const Resolution& resolution) const {
         constexpr double kClipped = 1e-9;
         const double rank = resolution.least * std::sqrt(photo_.exposure);
         if (!(photo_.white > 0)) return rank;
-        const Texture& picture = *photo_.picture;
-        const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, picture.width - 1.0));
-        const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, picture.height - 1.0));
-        const float* rgb = &picture.rgb[3 * (y * static_cast<std::size_t>(picture.width) + x)];
-        return std::max({rgb[0], rgb[1], rgb[2]}) >= static_cast<float>(photo_.white) ? kClipped * rank
-                                                                                      : rank;
+        const float brightest = brightest_in_footprint(*photo_.picture, image.position, image.jacobian);
+        return brightest >= static_cast<float>(photo_.white) ? kClipped * rank : rank;
     }
 
     Vec3 colour(const MapImage& image) const {
-        Vec3 colour = sample_footprint(*photo_.picture, image.position, image.jacobian) / photo_.exposure;
+        Vec3 colour =
+            photo_.mask ? sample_usable(*photo_.picture, *photo_.mask, image.position, image.jacobian).colour
+                        : sample_footprint(*photo_.picture, image.position, image.jacobian);
+        colour /= photo_.exposure;
         if (request_.divide_weight) colour /= glm::max(image.weight, Vec3(kLeastDivisor));
         return colour;
     }
