@@ -3,6 +3,8 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <string>
+#include <tuple>
 
 #include "base/util/error.h"
 #include "camera/camera.h"
@@ -176,6 +178,40 @@ TEST_CASE("a driver's mirror beats the best sphere, on and off its axis, and cur
     // Without its anchor the surface would slide along the rays; with it its middle stays in the rectangle.
     CHECK(std::abs(off.surface.height({0, 0}).z) < 1e-6);
     CHECK(off.sag < 0.05);
+}
+
+TEST_CASE(
+    "errors and sag are those all over the rectangle, and a surface that keeps to its samples is told of",
+    "[inverse][law]") {
+    // By reflecting at places of a grid of its own.
+    const auto all_over = [](const DesignWish& wish, const Design& design) {
+        const WishedRays rays(wish);
+        std::vector<double> degrees;
+        for (const Vec2& at : patch_samples(wish.patch.size, {157, 131}))
+            degrees.push_back(ray_error(rays, at, design.surface.height(at)));
+        return design_errors(degrees);
+    };
+    DesignWish wish = wish_on_axis();
+    for (const auto& [samples, controls, is_told] :
+         {std::tuple(40, 12, false), {40, 30, false}, {40, 40, true}, {8, 12, true}}) {
+        wish.samples = {samples, samples}, wish.patch.controls = {controls, controls};
+        const Design design = design_mirror(wish);
+        const DesignErrors truth = all_over(wish, design);
+        INFO(samples << " samples, " << controls << " control points");
+        CHECK(design.errors.mean == Approx(truth.mean).epsilon(0.05));
+        CHECK(design.errors.max > 0.8 * truth.max);
+        double lowest = INFINITY, highest = -INFINITY;
+        for (int row = 0; row <= 200; ++row)
+            for (int column = 0; column <= 200; ++column) {
+                const double z = design.surface.height((Vec2(column, row) / 200.0 - 0.5) * wish.patch.size).z;
+                lowest = std::min(lowest, z), highest = std::max(highest, z);
+            }
+        CHECK(design.sag == Approx(highest - lowest).epsilon(1e-3));
+        const bool told = std::any_of(
+            design.warnings.begin(), design.warnings.end(),
+            [](const auto& warning) { return warning.find("take more samples") != std::string::npos; });
+        CHECK(told == is_told);
+    }
 }
 
 TEST_CASE("what a designed mirror shows, traced, is as far from the wish as it says", "[inverse][law]") {

@@ -198,21 +198,63 @@ double rms(std::span<const double> values) {
     return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// Along one side: more than twice the samples and the control points, and not where the samples are.
+int count_checks(int samples, int controls) {
+    return 2 * std::max(samples, controls) + 1;
+}
+
+/// A surface that meets the samples with so many times less than what is left between them is told of, and
+/// from so many degrees.
+constexpr double kOverfitted = 3, kTellingError = 1e-3;
+
+/// What is left between the samples, too.
+void measure_rays(const DesignWish& wish, const WishedRays& rays, Design& design) {
+    const std::array<int, 2> counts{count_checks(wish.samples[0], wish.patch.controls[0]),
+                                    count_checks(wish.samples[1], wish.patch.controls[1])};
+    std::vector<double> degrees;
+    for (const Vec2& at : patch_samples(wish.patch.size, counts))
+        degrees.push_back(ray_error(rays, at, design.surface.height(at)));
+    design.errors = design_errors(std::move(degrees));
+    const double at_samples = design_errors(design.error_map.values).mean;
+    if (design.errors.mean > kTellingError && design.errors.mean > kOverfitted * at_samples)
+        design.warnings.push_back(
+            fmt::format("at its samples the surface is off by {:.3g} degrees in the mean, and by {:.3g} all "
+                        "over: take more "
+                        "samples, or fewer control points",
+                        at_samples, design.errors.mean));
+}
+
+/// What the surface is like, up to the rectangle's edges.
+struct SurfaceExtent {
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest, curvature = 0;
+};
+SurfaceExtent extent_of(const DesignWish& wish, const HeightField& surface) {
+    const int columns = count_checks(wish.samples[0], wish.patch.controls[0]),
+              rows = count_checks(wish.samples[1], wish.patch.controls[1]);
+    SurfaceExtent extent;
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const Vec2 share(column / (columns - 1.0), row / (rows - 1.0));
+            const Height h = surface.height((share - 0.5) * wish.patch.size);
+            extent.lowest = std::min(extent.lowest, h.z), extent.highest = std::max(extent.highest, h.z);
+            extent.curvature = std::max(extent.curvature, largest_curvature(h));
+        }
+    return extent;
+}
+
 /// What is told of the surface that was found.
 void measure(const DesignWish& wish, const WishedRays& rays, std::span<const Vec2> samples, Design& design) {
     const double step = kDifferenceShare * std::max(wish.patch.size.x, wish.patch.size.y);
     design.error_map = design.curl_map = {wish.samples[0], wish.samples[1], {}};
-    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest, curvature = 0;
     std::vector<double> flat;
     for (const Vec2& at : samples) {
         const Height h = design.surface.height(at);
-        lowest = std::min(lowest, h.z), highest = std::max(highest, h.z);
-        curvature = std::max(curvature, largest_curvature(h));
         design.error_map.values.push_back(ray_error(rays, at, h));
         design.curl_map.values.push_back(slope_curl(rays, Vec3(at, h.z), step));
         flat.push_back(slope_curl(rays, Vec3(at, 0), step));
     }
-    design.errors = design_errors(design.error_map.values);
+    measure_rays(wish, rays, design);
+    const auto [lowest, highest, curvature] = extent_of(wish, design.surface);
     design.curl = rms(design.curl_map.values);
     design.curl_flat = rms(flat);
     design.sag = highest - lowest;
