@@ -21,8 +21,11 @@ double index_at(const Glass& glass, SpectralLine line) {
     if (glass.index_c > 0 && glass.index_f > 0)
         return line == SpectralLine::kF ? glass.index_f : glass.index_c;
     if (!(glass.abbe > 0)) return glass.index;
-    const double half = (glass.index - 1) / (2 * glass.abbe);
-    return glass.index + (line == SpectralLine::kF ? half : -half);
+    // The share (n_F - n_d) / (n_F - n_C) on the line through K7 and F2 by Abbe numbers.
+    constexpr double kAbbeK7 = 60.41, kShareK7 = 0.6951, kAbbeF2 = 36.37, kShareF2 = 0.7062;
+    const double share = kShareK7 + (glass.abbe - kAbbeK7) * (kShareF2 - kShareK7) / (kAbbeF2 - kAbbeK7);
+    const double whole = (glass.index - 1) / glass.abbe;
+    return glass.index + (line == SpectralLine::kF ? share : share - 1) * whole;
 }
 
 namespace {

@@ -36,7 +36,9 @@ struct EnumNames<SpectralLine> {
                                        NamedValue<SpectralLine>{SpectralLine::kF, "F"}};
 };
 
-/// Where n_F and n_C are not known, they lie equally far from n_d, as scenes have it.
+/// Where n_F and n_C are not known, they lie beside n_d as those of a glass of this Abbe number on Schott's
+/// normal line, through K7 and F2, of the partial dispersion (n_F - n_d) / (n_F - n_C): for most glasses to
+/// 5e-5. (A scene's material has both equally far from n_d.)
 double index_at(const Glass& glass, SpectralLine line);
 
 /// A surface, and what follows it. Behind an odd number of mirrors light runs against the axis, and

@@ -29,6 +29,25 @@ TEST_CASE("Sellmeier's terms give the indices of the data sheets at d, C and F",
     CHECK(std::fabs(silica.abbe - 67.82) < 0.01);
 }
 
+TEST_CASE("an index and an Abbe number give C and F nearly as the data sheets", "[lens][oracle]") {
+    struct Sheet {
+        double d, abbe, c, f, within;
+    };
+    // N-BK7, K7, N-LAK9, F2, SF2, SF11: by the terms of their sheets.
+    for (const Sheet& sheet :
+         {Sheet{1.51680, 64.17, 1.51432, 1.52238, 2e-5}, Sheet{1.51112, 60.41, 1.50854, 1.51700, 1e-5},
+          Sheet{1.69100, 54.71, 1.68716, 1.69979, 5e-5}, Sheet{1.62004, 36.37, 1.61503, 1.63208, 1e-5},
+          Sheet{1.64769, 33.85, 1.64210, 1.66123, 2e-5}, Sheet{1.78472, 25.68, 1.77596, 1.80651, 1e-4}}) {
+        Glass glass;
+        glass.index = sheet.d, glass.abbe = sheet.abbe;
+        const double c = index_at(glass, SpectralLine::kC), f = index_at(glass, SpectralLine::kF);
+        INFO("n_d " << sheet.d);
+        CHECK(std::fabs(c - sheet.c) < sheet.within);
+        CHECK(std::fabs(f - sheet.f) < sheet.within);
+        CHECK(f - c == Approx((sheet.d - 1) / sheet.abbe).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("Schott's older formula gives BK7 as its catalogue of 1980 has it", "[lens][oracle]") {
     const Glass crown = schott_glass(
         "BK7", {2.2718929, -1.0108077e-2, 1.0592509e-2, 2.0816965e-4, -7.6472538e-6, 4.9240991e-7}, "", "");
