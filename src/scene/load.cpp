@@ -94,12 +94,14 @@ void warn_of_appearance(Reading& reading) {
     bool needs_light = false;
     for (const Id i : of_objects) {
         if (i >= scene.materials.size()) continue;
-        needs_light = needs_light || !scene.materials[i].unlit;
+        const Material& material = scene.materials[i];
+        needs_light = needs_light || (!material.unlit && material.emissive_factor == Vec3(0));
     }
     const bool is_baked = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                       [](const Mesh& mesh) { return !mesh.object.baked.empty(); });
     if (needs_light && scene.lights.empty() && !is_baked)
-        reading.warn("/lights", "there is no light: every object whose material is not unlit is black");
+        reading.warn("/lights",
+                     "there is no light: every object whose material is neither unlit nor emissive is black");
 }
 
 /// What a file is instead of a scene, by its name; empty where that does not say.

@@ -1,6 +1,8 @@
 // What a good scene becomes.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <string>
 
 #include "scene/read/override.h"
 #include "scene_text.h"
@@ -69,6 +71,30 @@ TEST_CASE("comments and free keys and the smallest scene", "[scene]") {
     CHECK(scene.warnings[0] == "room.json: the scene has no meshes");
 }
 
+TEST_CASE(
+    "a body of glass whose faces look inside is told of, a mirror and one turned by its transform are not",
+    "[scene]") {
+    const auto told = [](const std::string& faces, const std::string& material, const std::string& more) {
+        const Scene scene = load_text(
+            R"({"version": 1, "cameras": [{"lookAt": {"eye": [0,0,5], "at": [0,0,0]}}], "materials": [
+                {"name": "glass", "transmissionFactor": 1}, {"name": "mirror", "metallicFactor": 1}], "meshes": [
+                {"name": "cube", "role": "optic", "material": ")" +
+            material +
+            R"(", "points": [[-1,-1,-1],[-1,-1,1],[-1,1,-1],[-1,1,1],[1,-1,-1],[1,-1,1],[1,1,-1],[1,1,1]],
+                "faceVertexCounts": [4,4,4,4,4,4], "faceVertexIndices": )" +
+            faces + more + "}]}");
+        return std::any_of(scene.warnings.begin(), scene.warnings.end(), [](const std::string& warning) {
+            return warning.find("/meshes/0: the fronts of its faces look into it") != std::string::npos;
+        });
+    };
+    const std::string out = "[0,1,3,2, 4,6,7,5, 0,4,5,1, 2,3,7,6, 0,2,6,4, 1,5,7,3]",
+                      in = "[2,3,1,0, 5,7,6,4, 1,5,4,0, 6,7,3,2, 4,6,2,0, 3,7,5,1]";
+    CHECK(told(in, "glass", ""));
+    CHECK_FALSE(told(out, "glass", ""));
+    CHECK_FALSE(told(in, "mirror", ""));
+    CHECK_FALSE(told(out, "glass", R"(, "transform": {"scale": [-1, 1, 1]})"));
+}
+
 TEST_CASE("what is doubtful is a warning with its place", "[scene]") {
     const auto warned = [](const std::vector<SceneOverride>& overrides, const std::string& warning) {
         const Scene scene = load_text(kRoom, overrides);
@@ -90,14 +116,16 @@ TEST_CASE("what is doubtful is a warning with its place", "[scene]") {
     CHECK(warned({{"/meshes/2/material", "glass"}},
                  "/meshes/2/material: a mirror or glass on an object is drawn as a plain surface: an optic "
                  "reflects and refracts"));
-    CHECK(warned({{"/materials/2/unlit", "false"}, {"/lights", "[]"}},
-                 "/lights: there is no light: every object whose material is not unlit is black"));
+    CHECK(warned(
+        {{"/materials/2/unlit", "false"}, {"/lights", "[]"}},
+        "/lights: there is no light: every object whose material is neither unlit nor emissive is black"));
     CHECK(warned({{"/materials/0/emissiveFactor", "[1,0,0]"},
                   {"/materials/0/occlusionTexture", R"({"pattern": "checker"})"}},
                  "/meshes/1/material: the material 'chrome' of an optic: not drawn there: occlusionTexture, "
                  "emissiveFactor"));
-    CHECK_FALSE(warned({{"/lights", "[]"}},
-                       "/lights: there is no light: every object whose material is not unlit is black"));
+    CHECK_FALSE(warned(
+        {{"/lights", "[]"}},
+        "/lights: there is no light: every object whose material is neither unlit nor emissive is black"));
 }
 
 TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge", "[scene]") {

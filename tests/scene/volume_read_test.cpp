@@ -239,6 +239,18 @@ TEST_CASE("NRRDs are read, attached, detached and as text, and refused with the 
     CHECK(grid.scalars[7] == 7);
     CHECK(grid.steps[2] == Vec3(0, 0, 3));
     CHECK(grid.origin == Vec3(1, 0, -1));
+    // The place of the first sample along each axis, or where its cell begins.
+    for (const auto& [centers, origin] :
+         {std::pair("", Vec3(5, 6, 7)), {"centers: cell node cell\n", Vec3(5.5, 6, 8.5)}}) {
+        const RegularGrid moved = parse_nrrd(
+            head + centers + "axis mins: 5 6 7\nspacings: 1 2 3\nencoding: ascii\n\n0 1 2 3\n4 5 6 7\n",
+            "m.nrrd", none, copied);
+        CHECK(moved.origin == origin);
+        CHECK(moved.steps[1] == Vec3(0, 2, 0));
+    }
+    CHECK_THROWS_WITH(
+        parse_nrrd(head + "axis mins: 1 2\nencoding: ascii\n\n0 1 2 3 4 5 6 7\n", "m.nrrd", none, copied),
+        ContainsSubstring("'axis mins' must have three entries"));
     const RegularGrid turned =
         parse_nrrd(head + "space directions: (0,1,0) (1,0,0) (0,0,2)\nencoding: ascii\n\n0 1 2 3\n4 5 6 7\n",
                    "b.nrrd", none, copied);

@@ -95,12 +95,29 @@ void count_faces(const Cage& cage, CageDiagnostics& doubts) {
 
 }  // namespace
 
+double signed_volume(const Cage& cage) {
+    double volume = 0;
+    std::size_t first = 0;
+    for (const int count : cage.face_vertex_counts) {
+        const auto corner = [&](std::size_t k) {
+            return cage.points[static_cast<std::size_t>(cage.face_vertex_indices[first + k])] -
+                   cage.points[0];
+        };
+        for (std::size_t k = 2; k < static_cast<std::size_t>(count); ++k)
+            volume += dot(corner(0), cross(corner(k - 1), corner(k))) / 6;
+        first += static_cast<std::size_t>(count);
+    }
+    return volume;
+}
+
 CageDiagnostics diagnose_cage(const Cage& cage) {
     CageDiagnostics doubts;
     const std::vector<FaceEdge> edges = sorted_edges(cage);
     count_edges(edges, doubts);
     count_creases(cage, edges, doubts);
     count_faces(cage, doubts);
+    doubts.is_inside_out =
+        doubts.boundary_edges == 0 && doubts.non_manifold_edges == 0 && signed_volume(cage) < 0;
     return doubts;
 }
 

@@ -116,8 +116,13 @@ struct CageDiagnostics {
     std::size_t repeated_corners = 0;    // faces that visit a point twice
     std::size_t unknown_creases = 0;     // crease pairs that are no edge
     std::size_t flat_faces = 0;          // faces without area
+    bool is_inside_out = false;          // it bounds a body, whose inside the fronts of its faces look into
 };
 CageDiagnostics diagnose_cage(const Cage& cage);
+
+/// Of the body that the faces bound, as fans: positive where their fronts are outside (divergence theorem).
+/// Of a cage whose edges have two faces each, of opposite direction; its points in world units.
+double signed_volume(const Cage& cage);
 
 // A polygon in space cut into triangles between its corners.
 

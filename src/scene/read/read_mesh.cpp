@@ -72,6 +72,16 @@ void warn_count(std::size_t count, const std::string& what, const std::string& p
     if (count > 0) reading.warn(place, std::to_string(count) + " " + what);
 }
 
+}  // namespace
+
+void warn_of_inside_out(const Node& node, Reading& reading) {
+    reading.warn(node.place,
+                 "the fronts of its faces look into it: this body of glass is drawn as a hollow in endless "
+                 "glass; turn the order of each face's points round");
+}
+
+namespace {
+
 void check_far_points(const Node& node, const Cage& cage) {
     const std::optional<std::size_t> far = find_far_point(cage);
     if (!far) return;
@@ -150,6 +160,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
         warn_count(doubts.boundary_edges,
                    "edges have one face only: this glass is one interface, or a body with holes", node.place,
                    reading);
+    if (glass && doubts.is_inside_out) warn_of_inside_out(node, reading);
     warn_count(doubts.repeated_corners, "faces visit a point twice", node.place, reading);
     warn_count(doubts.unknown_creases, "creases lie where there is no edge", node.place, reading);
     warn_count(doubts.flat_faces, "faces have no area", node.place, reading);

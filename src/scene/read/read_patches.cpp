@@ -176,6 +176,9 @@ void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& re
                      std::to_string(bare) +
                          " edges of patches have no other along them: this glass is one interface, "
                          "or a body with holes");
+    constexpr int kAsPolygons = 4;
+    if (is_glass && edges.open == 0 && signed_volume(patch_polygons(mesh.patches, kAsPolygons).cage) < 0)
+        warn_of_inside_out(node, reading);
 }
 
 PolygonMesh read_object_patches(const Node& node, Mesh& mesh, Reading& reading) {

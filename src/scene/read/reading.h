@@ -133,6 +133,9 @@ void read_terrain(const Node& node, Mesh& mesh, Reading& reading);
 void read_optic_patches(const Node& node, bool is_glass, Mesh& mesh, Reading& reading);
 /// The patches of an object as polygons, in the world; warns of gaps.
 PolygonMesh read_object_patches(const Node& node, Mesh& mesh, Reading& reading);
+
+/// Says of a body of glass that the fronts of its faces look into it.
+void warn_of_inside_out(const Node& node, Reading& reading);
 /// Divides an object's triangles as its `bakedLight` says, and gives them that light. Throws InputError where
 /// it is of another mesh.
 void read_baked_light(const Node& baked, ObjectMesh& object);

@@ -1,6 +1,8 @@
 // Regular grids of samples: NRRD headers, and samples as they lie in memory.
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "base/util/error.h"
 #include "base/util/names.h"
@@ -115,6 +117,7 @@ class NrrdReader {
     bool next_line(std::string& line);
     void read_key(const std::string& key, const std::string& value);
     void read_steps(const std::string& key, const std::vector<std::string_view>& words);
+    void read_least(std::span<const std::string_view> words);
     std::vector<double> text_samples(std::string_view text) const;
 
     const std::string& bytes_;
@@ -123,7 +126,9 @@ class NrrdReader {
     RegularGrid grid_;
     SampleLayout layout_;
     std::string encoding_, data_file_;
-    bool has_type_ = false, has_sizes_ = false, has_endian_ = false;
+    std::array<double, 3> least_{};
+    std::array<bool, 3> of_cells_{};  // samples are the middles of cells, as `axis mins` counts
+    bool has_type_ = false, has_sizes_ = false, has_endian_ = false, has_least_ = false;
 };
 
 bool NrrdReader::next_line(std::string& line) {
@@ -154,6 +159,17 @@ void NrrdReader::read_steps(const std::string& key, const std::vector<std::strin
     if (glm::determinant(grid_.steps) == 0) fail("the space directions lie in a plane");
 }
 
+/// Along each axis the place of its first sample or, where samples are cells' middles, where its cell begins.
+void NrrdReader::read_least(std::span<const std::string_view> words) {
+    if (words.size() != 3) fail("'axis mins' must have three entries");
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::optional<double> least = parse_number(words[k]);
+        if (!least || !(std::fabs(*least) <= 1e30)) fail("the least place along an axis must be a number");
+        least_[k] = *least;
+    }
+    has_least_ = true;
+}
+
 void NrrdReader::read_key(const std::string& key, const std::string& value) {
     const std::vector<std::string_view> words = split_words(value);
     if (key == "dimension") {
@@ -174,6 +190,11 @@ void NrrdReader::read_key(const std::string& key, const std::string& value) {
         has_sizes_ = true;
     } else if (key == "spacings" || key == "space directions") {
         read_steps(key, words);
+    } else if (key == "axis mins" || key == "axismins") {
+        read_least(words);
+    } else if (key == "centers" || key == "centerings") {
+        for (std::size_t k = 0; k < std::min<std::size_t>(3, words.size()); ++k)
+            of_cells_[k] = words[k] == "cell";
     } else if (key == "space origin") {
         const std::optional<Vec3> origin = parse_vector(value);
         if (!origin) fail("the space origin must be three numbers in brackets");
@@ -242,6 +263,11 @@ RegularGrid NrrdReader::read(const ReadBeside& read_beside, const Inflate& infla
         read_key(line.substr(0, colon), rest_of_line(rest, rest.substr(0, 0)));
     }
     if (!has_type_ || !has_sizes_ || encoding_.empty()) fail("needs type, sizes and encoding");
+    if (has_least_)
+        for (int k = 0; k < 3; ++k) {
+            const auto axis = static_cast<std::size_t>(k);
+            grid_.origin[k] = least_[axis] + (of_cells_[axis] ? 0.5 * grid_.steps[k][k] : 0.0);
+        }
     std::string detached;
     std::string_view samples = std::string_view(bytes_).substr(std::min(at_, bytes_.size()));
     if (!data_file_.empty()) {
