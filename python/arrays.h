@@ -13,9 +13,9 @@ namespace trilens::python {
 /// Throws UsageError for a numpy array of which values are masked: nothing here could leave them out.
 void refuse_masked(py::handle given);
 
-/// Arrays of any real type and layout; what is not float64 in C order is converted. Complex ones, texts and
-/// those with masked values are refused with UsageError, where numpy would leave the imaginary part or the
-/// mask out, or read the numbers.
+/// Arrays of any real type and layout; what is not float64 in C order is converted. Complex ones and those
+/// with masked values are refused with UsageError, where numpy would leave the imaginary part or the mask out;
+/// texts with Python's TypeError.
 class Doubles : public py::array_t<double, py::array::c_style | py::array::forcecast> {
   public:
     using Plain = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -97,7 +97,7 @@ struct pybind11::detail::type_caster<trilens::python::Doubles> {
         if (any.dtype().kind() == 'c')
             throw trilens::UsageError("an array of complex numbers is given for real ones");
         if (any.dtype().kind() == 'U' || any.dtype().kind() == 'S')
-            throw trilens::UsageError("an array of texts is given for numbers");
+            throw type_error("an array of texts is given for numbers");
         trilens::python::refuse_masked(given);
         if (!plain.load(given, convert)) return false;
         value = trilens::python::Doubles(static_cast<trilens::python::Doubles::Plain&>(plain));

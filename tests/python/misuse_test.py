@@ -66,9 +66,9 @@ def test_masked_values_are_refused():
 
 def test_texts_are_no_numbers():
     renderer = trilens.Renderer(sphere())
-    with pytest.raises(trilens.UsageError, match="texts"):
+    with pytest.raises(TypeError, match="texts"):
         renderer.project([["1", "1", "2"]])
-    with pytest.raises(trilens.UsageError, match="texts"):
+    with pytest.raises(TypeError, match="texts"):
         renderer.project(np.array([[b"1", b"1", b"2"]]))
 
 

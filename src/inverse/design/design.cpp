@@ -198,29 +198,44 @@ double rms(std::span<const double> values) {
     return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Along one side: more than twice the samples and the control points, and not where the samples are.
-int count_checks(int samples, int controls) {
-    return 2 * std::max(samples, controls) + 1;
+/// How many places along each side tell of a surface: four times as many as samples and control points, of
+/// many twice as many; and not those of the samples.
+std::array<int, 2> check_counts(const DesignWish& wish) {
+    constexpr int kManyChecks = 401;
+    std::array<int, 2> counts{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        const int most = std::max(wish.samples[k], wish.patch.controls[k]);
+        counts[k] = std::max(2 * most + 1, std::min(4 * most + 1, kManyChecks));
+    }
+    return counts;
+}
+
+/// So many places, the rectangle's edges among them.
+std::vector<Vec2> places_to_edges(const Vec2& size, const std::array<int, 2>& counts) {
+    std::vector<Vec2> places;
+    for (int row = 0; row < counts[1]; ++row)
+        for (int column = 0; column < counts[0]; ++column)
+            places.push_back((Vec2(column, row) / Vec2(counts[0] - 1, counts[1] - 1) - 0.5) * size);
+    return places;
 }
 
 /// A surface that meets the samples with so many times less than what is left between them is told of, and
 /// from so many degrees.
-constexpr double kOverfitted = 3, kTellingError = 1e-3;
+constexpr double kOverfitted = 3, kTellingError = 1e-4;
 
 /// What is left between the samples, too.
 void measure_rays(const DesignWish& wish, const WishedRays& rays, Design& design) {
-    const std::array<int, 2> counts{count_checks(wish.samples[0], wish.patch.controls[0]),
-                                    count_checks(wish.samples[1], wish.patch.controls[1])};
+    const auto error = [&](const Vec2& at) { return ray_error(rays, at, design.surface.height(at)); };
     std::vector<double> degrees;
-    for (const Vec2& at : patch_samples(wish.patch.size, counts))
-        degrees.push_back(ray_error(rays, at, design.surface.height(at)));
+    for (const Vec2& at : patch_samples(wish.patch.size, check_counts(wish))) degrees.push_back(error(at));
     design.errors = design_errors(std::move(degrees));
+    for (const Vec2& at : places_to_edges(wish.patch.size, check_counts(wish)))
+        design.errors.max = std::max(design.errors.max, error(at));
     const double at_samples = design_errors(design.error_map.values).mean;
     if (design.errors.mean > kTellingError && design.errors.mean > kOverfitted * at_samples)
         design.warnings.push_back(
             fmt::format("at its samples the surface is off by {:.3g} degrees in the mean, and by {:.3g} all "
-                        "over: take more "
-                        "samples, or fewer control points",
+                        "over: take more samples, or fewer control points",
                         at_samples, design.errors.mean));
 }
 
@@ -229,16 +244,12 @@ struct SurfaceExtent {
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest, curvature = 0;
 };
 SurfaceExtent extent_of(const DesignWish& wish, const HeightField& surface) {
-    const int columns = count_checks(wish.samples[0], wish.patch.controls[0]),
-              rows = count_checks(wish.samples[1], wish.patch.controls[1]);
     SurfaceExtent extent;
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column) {
-            const Vec2 share(column / (columns - 1.0), row / (rows - 1.0));
-            const Height h = surface.height((share - 0.5) * wish.patch.size);
-            extent.lowest = std::min(extent.lowest, h.z), extent.highest = std::max(extent.highest, h.z);
-            extent.curvature = std::max(extent.curvature, largest_curvature(h));
-        }
+    for (const Vec2& at : places_to_edges(wish.patch.size, check_counts(wish))) {
+        const Height h = surface.height(at);
+        extent.lowest = std::min(extent.lowest, h.z), extent.highest = std::max(extent.highest, h.z);
+        extent.curvature = std::max(extent.curvature, largest_curvature(h));
+    }
     return extent;
 }
 

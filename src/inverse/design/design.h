@@ -160,7 +160,7 @@ class WishedRays {
 // Freeform mirrors and lenses for a wanted map: the surface whose rays come nearest to a wish.
 
 /// How far reflected or refracted rays are from the wished ones, degrees, over places of the rectangle. A
-/// design's are more than twice as many along each side as its samples and its control points, beside them.
+/// design's are more than twice as many along each side as its samples and its control points.
 struct DesignErrors {
     double mean = 0, p95 = 0, max = 0;
 };

@@ -300,6 +300,12 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
             "them, and its standard deviations hold for those alone; are points in the scene's unit, and "
             "pixels those of its film?",
             result.outliers, given.size(), request.huber));
+    else if (result.outliers > 0)
+        result.warnings.push_back(
+            fmt::format("{} of {} pairs are outliers, more than {:g} px from their images: they pull a "
+                        "little all the same, of "
+                        "which standard deviations know nothing; what is left out of the file pulls no more",
+                        result.outliers, given.size(), request.huber));
     tell_changes(problem, result);
     result.document = problem.document().dump(2) + "\n";
     return result;
