@@ -56,7 +56,7 @@ def test_a_design_is_nearer_to_its_wish_than_a_sphere(tmp_path):
     mirror = trilens.design_mirror(wish, compare_sphere=True)
     assert mirror.errors["mean"] < 0.5 * mirror.sphere["mean"]
     assert mirror.error_map.shape == (40, 40) and mirror.heights.shape == (12, 12)
-    assert mirror.error_map.mean() == pytest.approx(mirror.errors["mean"])
+    assert mirror.error_map.mean() == pytest.approx(mirror.errors["mean"], rel=0.01)  # at samples; all over
     assert [mesh.name for mesh in mirror.scene.meshes][0] == "mirror"
     mirror.save_stl(tmp_path / "m.stl")
     assert (tmp_path / "m.stl").stat().st_size > 84
