@@ -147,17 +147,18 @@ void prepare_facets(PathBuild& build, std::span<const Id> facets) {
     std::vector<DividedFacet> divided(fresh.size());
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
-            const auto surveyed = build.caches.surveyed.find(fresh[i]);
-            if (surveyed != build.caches.surveyed.end())
-                divided[i] = std::move(*surveyed->second);
-            else if (!build.progress.has_room[fresh[i]] || !is_worth_probing(build, fresh[i]))
+            if (build.caches.surveyed.contains(fresh[i])) continue;
+            if (!build.progress.has_room[fresh[i]] || !is_worth_probing(build, fresh[i]))
                 divided[i] = traced_facet(screen_corners(build.out, fresh[i]));
             else
                 divided[i] = divide_facet(build.in.context, facet_to_divide(build, fresh[i]), build.in.params,
                                           build.out.probe_report.plan);
         }
     });
-    for (const Id f : fresh) build.caches.surveyed.erase(f);
+    // Taken when all are there: whoever is stopped before finds them again.
+    for (std::size_t i = 0; i < fresh.size(); ++i)
+        if (const auto surveyed = build.caches.surveyed.extract(fresh[i]))
+            divided[i] = std::move(*surveyed.mapped());
     set_ray_scales(build.in, divided);
     std::vector<FittedLeaf> whole, open;
     for (std::size_t i = 0; i < fresh.size(); ++i) {
