@@ -1,6 +1,8 @@
 // Items that go through stages side by side, in slots of their own.
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "base/util/parallel.h"
@@ -52,4 +54,41 @@ TEST_CASE("what a stage of a pipeline throws comes out, and later items do not e
     };
     CHECK_THROWS_AS(run_pipeline(50, 3, {fail_at(0), fail_at(1), fail_at(2)}), std::runtime_error);
     for (const std::size_t item : ended) CHECK(item < 5);
+}
+
+TEST_CASE("a stage's own loop does all that it is to do, also where another item ends the pipeline meanwhile",
+          "[base]") {
+    constexpr std::size_t kCount = 400;
+    set_thread_count(4);
+    int met = 0;
+    for (int round = 0; round < 20; ++round) {
+        std::atomic<bool> has_begun = false, has_thrown = false;
+        std::atomic<std::size_t> done = 0, done_after = kCount;
+        PipelineStages stages;
+        stages.begin = [](std::size_t, std::size_t) {};
+        stages.work = [&](std::size_t item, std::size_t) {
+            const auto wait_for = [](const std::atomic<bool>& flag) {
+                const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+                while (!flag && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+            };
+            if (item == 0) {
+                wait_for(has_begun);
+                has_thrown = true;
+                throw std::runtime_error("stage");
+            }
+            parallel_for(kCount, 1, [&](std::size_t from, std::size_t to) {
+                has_begun = true;
+                wait_for(has_thrown);
+                if (from % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                done += to - from;
+            });
+            done_after = done.load();
+        };
+        stages.end = [](std::size_t, std::size_t) {};
+        CHECK_THROWS_AS(run_pipeline(2, 2, stages), std::runtime_error);
+        met += done > 0;
+        CHECK(done_after == kCount);
+    }
+    set_thread_count(0);
+    CHECK(met > 0);
 }

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 #endif
 
 #include <memory>
@@ -49,9 +50,11 @@ int thread_count() {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body) {
     if (count == 0) return;
+    // Bound to a loop around it that another item's exception ends, it would return before all is done.
+    tbb::task_group_context own(tbb::task_group_context::isolated);
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain > 0 ? grain : 1),
-        [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+        [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); }, own);
 }
 
 void run_side_by_side(std::initializer_list<std::function<void()>> tasks) {
@@ -79,7 +82,8 @@ void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& st
         });
     const auto end = tbb::make_filter<std::size_t, void>(
         tbb::filter_mode::serial_in_order, [&](std::size_t item) { stages.end(item, item % slots); });
-    tbb::parallel_pipeline(slots, begin & work & end);
+    tbb::task_group_context own(tbb::task_group_context::isolated);  // as in parallel_for
+    tbb::parallel_pipeline(slots, begin & work & end, own);
 }
 
 void run_isolated(const std::function<void()>& work) {

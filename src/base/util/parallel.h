@@ -21,7 +21,8 @@ int thread_count();
 
 /// Calls body(first, last) over disjoint ranges that cover [0, count), in any order and on any thread.
 /// Results must not depend on how the ranges fall. `grain`: smallest range worth a thread of its own.
-/// An exception thrown by body is rethrown here.
+/// An exception thrown by body is rethrown here; without one all is done, also where a loop around this one
+/// ends by an exception meanwhile.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body);
 
