@@ -92,7 +92,7 @@ const PlaneBeams* BeamLight::plane_beams(const ReceiverSide& on, const Progress&
         params.tolerance = tolerance_ * space_.size;
         params.reach = reach_beyond_faces();
         for (const BeamEnd& end : beams_.ends)
-            params.brightest = std::max(params.brightest, end.light.x + end.light.y + end.light.z);
+            params.brightest = std::max(params.brightest, strength_of(end.light));
         params.faint_light = kFaintShare * refined_->mean_light();
         params.same_place = kSamePlace * space_.size;
         const Vec3 normal = on.is_back ? -face.normal : face.normal;
@@ -219,10 +219,7 @@ bool BeamLight::is_hidden(const Piece& piece, const Vec3& from, const Vec3& orig
     way.add(from, (1 - kSamePlace) * toward);
     if (space_.objects->occluded(way)) return true;
     const Id last = beams_.histories[piece.beam.history].steps.back().optic;
-    const double far = length(toward);
-    double wide = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        wide = std::max(wide, length(piece.corners.end[k]->origin - piece.corners.end[(k + 1) % 3]->origin));
+    const double far = length(toward), wide = width_of(piece.corners);
     const LimitTracer& tracer = *space_.optics->optics[last].tracer;
     if (wide < far) {
         Segments before;

@@ -16,15 +16,14 @@ double length_to(const ReceiverPlane& plane, const BeamEnd& end) {
     return dot(end.origin - plane.point, plane.normal) / -dot(end.direction, plane.normal);
 }
 
-/// Of where it leaves the last optic.
+}  // namespace
+
 double width_of(const BeamCorners& corners) {
     double wide = 0;
     for (std::size_t k = 0; k < 3; ++k)
         wide = std::max(wide, length(corners.end[k]->origin - corners.end[(k + 1) % 3]->origin));
     return wide;
 }
-
-}  // namespace
 
 std::optional<std::array<Vec2, 6>> CurvedBeam::fall(const ReceiverPlane& plane) const {
     std::array<Vec2, 6> at;

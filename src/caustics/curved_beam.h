@@ -13,6 +13,9 @@ namespace trilens {
 
 using BeamEnds = std::array<const BeamEnd*, 3>;
 
+/// The longest of its sides where it leaves the last optic.
+double width_of(const BeamCorners& corners);
+
 /// A beam on a plane: of its ends and then of the middles of its sides.
 struct FallenCurve {
     std::array<Vec2, 6> at{};  // in the plane's coordinates

@@ -32,10 +32,6 @@ constexpr double kDim = 20, kMostDim = 12;
 /// As beams of few pieces have it, light is no brighter than so many times its mean, nor less bright.
 constexpr double kMostDense = 2;
 
-double sum_of(const Vec3& light) {
-    return light.x + light.y + light.z;
-}
-
 /// Of a side's quarter points and of an inner side's middle: weights of the three ends.
 struct QuarterMiddle {
     Vec3 weights;
@@ -159,8 +155,8 @@ struct PlaneBeams::PartsMaker {
     static double strength_of_brightest(const CurvedBeam& beam) {
         double strength = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            strength =
-                std::max({strength, sum_of(beam.corners.end[k]->light), sum_of(beam.middle[k]->light)});
+            strength = std::max(
+                {strength, strength_of(beam.corners.end[k]->light), strength_of(beam.middle[k]->light)});
         return strength;
     }
 
@@ -195,8 +191,8 @@ struct PlaneBeams::PartsMaker {
     static double difference(const std::array<Vec3, 6>& light) {
         double brightest = 0, bends = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            const double a = sum_of(light[(k + 1) % 3]), b = sum_of(light[(k + 2) % 3]),
-                         m = sum_of(light[3 + k]);
+            const double a = strength_of(light[(k + 1) % 3]), b = strength_of(light[(k + 2) % 3]),
+                         m = strength_of(light[3 + k]);
             brightest = std::max({brightest, a, m}), bends = std::max(bends, std::fabs(m - 0.5 * (a + b)));
         }
         return brightest > 0 ? bends / brightest : 0;
@@ -264,7 +260,7 @@ struct PlaneBeams::PartsMaker {
     /// there, since its flat triangle may have no bounds.
     bool is_faint(const BeamCorners& corners) const {
         double strength = 0;
-        for (const BeamEnd* end : corners.end) strength = std::max(strength, sum_of(end->light));
+        for (const BeamEnd* end : corners.end) strength = std::max(strength, strength_of(end->light));
         bool falls = false;
         for (const BeamEnd* end : corners.end) {
             const double height = dot(end->origin - plane.point, plane.normal),

@@ -219,8 +219,7 @@ struct RefinedBeams::Visit {
     /// of the light's mean over the scene.
     double brightness(const Ends& end) const {
         double brightest = 0;
-        for (const BeamEnd* one : end)
-            brightest = std::max(brightest, one->light.x + one->light.y + one->light.z);
+        for (const BeamEnd* one : end) brightest = std::max(brightest, strength_of(one->light));
         if (brightest == 0) return 0;
         const double area = unit * unit * plane.unit_area;
         return refined.corners(beam, end).measure * brightest / (refined.mean_light_ * area);

@@ -7,29 +7,30 @@
 #include "base/math/catmull_rom.h"
 
 namespace trilens {
+namespace {
 
-Vec3 sample_bicubic(const Texture& photo, const Vec2& at) {
+/// use(index of the pixel, its weight) for the pixels of a bicubic sample that have any: at most sixteen.
+template <typename Use>
+void for_each_pixel(const Texture& photo, const Vec2& at, const Use& use) {
     const double x = at.x - 0.5, y = at.y - 0.5, left = std::floor(x), top = std::floor(y);
     const std::array<double, 4> across = catmull_rom(x - left), down = catmull_rom(y - top);
-    std::array<std::size_t, 4> column;
-    for (int i = 0; i < 4; ++i)
-        column[static_cast<std::size_t>(i)] =
-            3 * static_cast<std::size_t>(std::clamp(left + i - 1, 0.0, photo.width - 1.0));
-    Vec3 sum{0};
-    for (int j = 0; j < 4; ++j) {
-        const auto row = static_cast<std::size_t>(std::clamp(top + j - 1, 0.0, photo.height - 1.0));
-        const float* values = photo.rgb.data() + 3 * row * static_cast<std::size_t>(photo.width);
-        Vec3 line{0};
-        for (std::size_t i = 0; i < 4; ++i) {
-            const float* p = values + column[i];
-            line += across[i] * Vec3(p[0], p[1], p[2]);
-        }
-        sum += down[static_cast<std::size_t>(j)] * line;
+    std::array<std::size_t, 4> column{};
+    for (std::size_t i = 0; i < 4; ++i)
+        column[i] =
+            static_cast<std::size_t>(std::clamp(left + static_cast<double>(i) - 1, 0.0, photo.width - 1.0));
+    for (std::size_t j = 0; j < 4; ++j) {
+        const auto row =
+            static_cast<std::size_t>(std::clamp(top + static_cast<double>(j) - 1, 0.0, photo.height - 1.0));
+        for (std::size_t i = 0; i < 4; ++i)
+            if (const double weight = across[i] * down[j]; weight != 0)
+                use(row * static_cast<std::size_t>(photo.width) + column[i], weight);
     }
-    return glm::max(sum, Vec3(0));
 }
 
-namespace {
+Vec3 colour_of(const Texture& photo, std::size_t pixel) {
+    const float* rgb = &photo.rgb[3 * pixel];
+    return {rgb[0], rgb[1], rgb[2]};
+}
 
 /// The places whose bicubic samples make up the mean over a footprint.
 struct FootprintPlaces {
@@ -59,26 +60,17 @@ struct FootprintPlaces {
     }
 };
 
-/// use(index of the pixel, its weight) for the sixteen pixels of a bicubic sample that have any.
-template <typename Use>
-void for_each_pixel(const Texture& photo, const Vec2& at, const Use& use) {
-    const double left = std::floor(at.x - 0.5), top = std::floor(at.y - 0.5);
-    const std::array<double, 4> across = catmull_rom(at.x - 0.5 - left), down = catmull_rom(at.y - 0.5 - top);
-    for (int j = 0; j < 4; ++j)
-        for (int i = 0; i < 4; ++i) {
-            const double weight = across[static_cast<std::size_t>(i)] * down[static_cast<std::size_t>(j)];
-            if (weight == 0) continue;
-            const auto column = static_cast<std::size_t>(std::clamp(left + i - 1, 0.0, photo.width - 1.0)),
-                       row = static_cast<std::size_t>(std::clamp(top + j - 1, 0.0, photo.height - 1.0));
-            use(row * static_cast<std::size_t>(photo.width) + column, weight);
-        }
-}
-
 }  // namespace
+
+Vec3 sample_bicubic(const Texture& photo, const Vec2& at) {
+    Vec3 sum{0};
+    for_each_pixel(photo, at,
+                   [&](std::size_t pixel, double weight) { sum += weight * colour_of(photo, pixel); });
+    return glm::max(sum, Vec3(0));
+}
 
 Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian) {
     const FootprintPlaces places(at, jacobian);
-    if (places.along == 1 && places.down == 1) return sample_bicubic(photo, at);
     Vec3 sum{0};
     places.for_each([&](const Vec2& place) { sum += sample_bicubic(photo, place); });
     return sum / (double(places.along) * places.down);
@@ -102,8 +94,7 @@ UsableMean sample_usable(const Texture& photo, const Texture& mask, const Vec2& 
         for_each_pixel(photo, place, [&](std::size_t pixel, double weight) {
             all += weight;
             if (mask.rgb[3 * pixel] < 0.5f) return;
-            const float* rgb = &photo.rgb[3 * pixel];
-            mean.colour += weight * Vec3(rgb[0], rgb[1], rgb[2]);
+            mean.colour += weight * colour_of(photo, pixel);
             mean.share += weight;
         });
     });

@@ -199,7 +199,6 @@ bool is_worth_probing(const PathBuild& build, Id facet) {
 
 void survey_facets(PathBuild& build) {
     if (build.progress.is_surveyed || build.in.params.per_pixel == 0) return;
-    build.progress.is_surveyed = true;
     const ProbeContext& context = build.in.context;
     // Of several samples in a pixel enough is saved beside their paths that polyhedra are probed as others are.
     const bool is_clipped =
@@ -236,6 +235,7 @@ void survey_facets(PathBuild& build) {
     }
     build.out.probe_report.surveyed = chosen.size();
     build.out.probe_report.plan = ProbePlan(build.in.params.per_pixel, costs, tally);
+    build.progress.is_surveyed = true;
 }
 
 }  // namespace trilens
