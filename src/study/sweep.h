@@ -46,7 +46,7 @@ PointRequest request_at(PointRequest base, const Coordinates& point);
 
 /// The point's scene. Throws as load_scene does; UsageError where a point would change the text of a scene in
 /// memory; InputError where no optic has the point's name, or where the camera has no facets to choose.
-Scene load_scene(const PointRequest& request);
+Scene load_point_scene(const PointRequest& request);
 
 // Sweeps of scenes: a request made into runs, each drawn and traced.
 

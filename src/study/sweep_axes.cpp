@@ -196,7 +196,7 @@ PointRequest request_at(PointRequest request, const Coordinates& point) {
     return request;
 }
 
-Scene load_scene(const PointRequest& request) {
+Scene load_point_scene(const PointRequest& request) {
     const bool changes = !request.optic.empty() || !request.of_optics.empty() || request.camera_facets > 0;
     if (request.loaded && request.scene.file.empty()) {
         if (!request.scene.overrides.empty() || changes)

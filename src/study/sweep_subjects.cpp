@@ -57,7 +57,7 @@ const SubjectFacts& Subjects::facts(const PointRequest& request) {
         const auto known = facts_.find(key);
         if (known != facts_.end()) return known->second;
     }
-    const Scene scene = load_scene(request);
+    const Scene scene = load_point_scene(request);
     SubjectFacts facts = facts_of(scene, request);
     const std::lock_guard guard(mutex_);
     warn_once(scene);
@@ -86,7 +86,7 @@ std::shared_ptr<const LoadedSubject> Subjects::load(const PointRequest& request)
     // One makes it, the others wait for it; other scenes are made meanwhile.
     const std::lock_guard guard(slot->making);
     if (slot->subject) return slot->subject;
-    Scene scene = load_scene(request);
+    Scene scene = load_point_scene(request);
     const std::size_t camera = find_camera(scene, request.camera);
     const Stopwatch watch;
     std::unique_ptr<const World> world = make_checked_world(std::move(scene), {});
@@ -174,7 +174,7 @@ std::vector<LeftOutScene> leave_out_scenes(SweepAxes& axes, const PointRequest& 
         if (!error) continue;
         if (!first) first = error;
         // What cannot be read at all is no matter of the axes.
-        load_scene(request_at(base, {{"scene", scene}}));
+        load_point_scene(request_at(base, {{"scene", scene}}));
         left_out.push_back({scene.text, reason_of(error)});
     }
     if (left_out.size() == scenes->values.size()) std::rethrow_exception(first);

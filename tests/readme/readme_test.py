@@ -1,7 +1,7 @@
 """Runs what the README and the pages of docs/ tell their reader to type, from their text, each in a fresh folder, looks at
 what comes of it, and holds the answers that they show against those of the program.
 
-    python3 readme_test.py BUILD FOLDER [PAGE.md ...]
+    python3 readme_test.py BUILD FOLDER [PAGE.md or folder of pages ...]
 
 Shell blocks run as they stand, in one shell, one after the other, unless a comment before them says why not. C++ of the
 README is compiled and run by tests/examples, its Python by tests/python/readme_test.py; here each is only looked for.
@@ -193,7 +193,8 @@ def read_page(build, folder, page):
 def main():
     build, folder = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     asked = [pathlib.Path(word).resolve() for word in sys.argv[3:]]
-    asked = asked or [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+    asked = [page for word in asked or [SOURCE / "README.md", SOURCE / "docs"]
+             for page in ([word] if word.is_file() else sorted(word.glob("*.md")))]
     passed = failed = skipped = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for reader in pool.map(lambda page: read_page(build, folder, page), asked):
