@@ -6,11 +6,10 @@ first=$1 trilens=$2 scenes=$3 folder=$4
 
 rm -rf "$folder"
 mkdir -p "$folder"
-for scene in flat paths/wine-glass; do
-    name=${scene##*/}
-    "$first" "$scenes/$scene.json" "$folder/$name.png" 2>/dev/null
-    "$trilens" render "$scenes/$scene.json" -o "$folder/$name-command.png" -q
-    cmp "$folder/$name.png" "$folder/$name-command.png"
+for scene in flat context; do
+    "$first" "$scenes/$scene.json" "$folder/$scene.png" 2>/dev/null
+    "$trilens" render "$scenes/$scene.json" -o "$folder/$scene-command.png" -q
+    cmp "$folder/$scene.png" "$folder/$scene-command.png"
 done
 for wrong in "$scenes/nowhere.json" "$0"; do
     status=0

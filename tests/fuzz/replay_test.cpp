@@ -75,7 +75,7 @@ Counts replay(const FuzzTarget& target, const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("what strangers wrote is read or refused, never more", "[fuzz][bad-input][law]") {
+TEST_CASE("what strangers wrote is read or refused, never more", "[fuzz][bad-input][law][thorough]") {
     for (const FuzzTarget& target : fuzz_targets()) {
         const fs::path folder = fs::path(trilens_test::source_dir()) / "fuzz/seeds" / target.name;
         INFO(folder);

@@ -182,7 +182,7 @@ TEST_CASE("a driver's mirror beats the best sphere, on and off its axis, and cur
 
 TEST_CASE(
     "errors and sag are those all over the rectangle, and a surface that keeps to its samples is told of",
-    "[inverse][law]") {
+    "[inverse][law][thorough]") {
     // By reflecting at places of a grid of its own.
     const auto all_over = [](const DesignWish& wish, const Design& design) {
         const WishedRays rays(wish);

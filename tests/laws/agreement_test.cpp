@@ -68,7 +68,7 @@ TEST_CASE("projector and Embree agree over whole paths: every end of every sampl
             check_agreement(name, n, *shipped_world("paths/" + name, n, 120, 90), true);
 }
 
-TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[laws][paths][law]") {
+TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[laws][paths][law][thorough]") {
     for (const std::string& name : kGlassScenes)
         for (const int n : {1, 8}) check_agreement(name, n, *shipped_world("paths/" + name, n, 72, 54), true);
 }

@@ -61,7 +61,7 @@ ShownImages images_of_pixels(const World& world, int step) {
 
 }  // namespace
 
-TEST_CASE("Scenes that an attack found have the truth's paths", "[laws][law][data][oracle]") {
+TEST_CASE("Scenes that an attack found have the truth's paths", "[laws][law][data][oracle][thorough]") {
     struct Attack {
         const char* name;
         int n;
@@ -137,7 +137,7 @@ TEST_CASE("Paths at a seam of mirrors meet as many optics as the truth's", "[law
     for (const int n : {1, 2, 4, 8}) CHECK(most(Engine::kExact, n) <= truth);
 }
 
-TEST_CASE("What the truth shows in a pixel is a visible image there", "[laws][law][data][oracle]") {
+TEST_CASE("What the truth shows in a pixel is a visible image there", "[laws][law][data][oracle][thorough]") {
     struct Attack {
         const char* name;
         int step;

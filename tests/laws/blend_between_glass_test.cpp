@@ -167,7 +167,7 @@ TEST_CASE("a blended pane on a mirror is seen before it and in it, in glass as i
 }
 
 TEST_CASE("light comes through what blends where two glasses touch once, and twice on a mirror in glass",
-          "[laws][law][caustics]") {
+          "[laws][law][caustics][thorough]") {
     const auto slab = [](const std::string& name, const std::string& material, const Vec3& low,
                          const Vec3& high) {
         std::string points;

@@ -193,7 +193,7 @@ TEST_CASE("rough glass shows what blends in it, drawn and traced", "[laws][law]"
           0.05);
 }
 
-TEST_CASE("what blends in glass dims light that comes through it", "[laws][law][caustics]") {
+TEST_CASE("what blends in glass dims light that comes through it", "[laws][law][caustics][thorough]") {
     const auto pane_of_glass = [](double low, double high) {
         std::string points;
         for (const char* const x : {"-2", "2"})

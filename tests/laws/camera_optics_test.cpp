@@ -193,7 +193,7 @@ TEST_CASE("a camera inside a room of mirrors: engines agree and rays end where t
 }
 
 TEST_CASE("an error that is asked for is kept before every camera, and most is projected",
-          "[laws][law][golden]") {
+          "[laws][law][golden][thorough]") {
     const auto summary = [](const World& world, std::size_t camera, std::optional<double> max_error) {
         PictureRequest request;
         request.frame.camera = camera;

@@ -107,7 +107,7 @@ TEST_CASE("through every camera the projector, the thesis' engine and Embree see
 }
 
 TEST_CASE("through every camera the picture comes to the exact surface's and the exact rays'",
-          "[laws][law]") {
+          "[laws][law][thorough]") {
     const auto coarse = camera_room(120, 90, 4), fine = camera_room(120, 90, 16);
     for (std::size_t c = 0; c < coarse->scene.cameras.size(); ++c) {
         INFO(coarse->scene.cameras[c].name);

@@ -65,7 +65,7 @@ double light_over_ball(double z) {
 }  // namespace
 
 TEST_CASE("light that a ball of glass sends along a floor is as Snell and Fresnel have it",
-          "[laws][law][caustics]") {
+          "[laws][law][caustics][thorough]") {
     // Part of the same beams rises and never falls on the floor.
     const LitWorld lit(lit_world(R"({"name": "ball", "role": "optic", "material": "glass", "resolution": 8,
         "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",

@@ -85,7 +85,7 @@ double mean_over_pixel(const std::vector<double>& rings, int x, int y, int side)
 }  // namespace
 
 TEST_CASE("the sun in a ball of water draws both rainbows, and nothing between them that is not there",
-          "[laws][law][caustics]") {
+          "[laws][law][caustics][thorough]") {
     constexpr int kSide = 160;
     const auto world = make_world(load_scene(source_dir() + "/scenes/caustics/rainbow.json", {}, {}), ignore);
     CausticMapRequest request;

@@ -82,7 +82,7 @@ TEST_CASE("light that turns around in a ring more often than any corner's is fou
 
 // Each ball shows the others in bands, and those in narrower bands, that no corner of the light's film needs
 // to lie in.
-TEST_CASE("no light is lost between three mirror balls", "[laws][law][caustics]") {
+TEST_CASE("no light is lost between three mirror balls", "[laws][law][caustics][thorough]") {
     std::string balls;
     for (const char* center : {"-0.62,0.8,0", "0.62,0.8,0", "0,0.8,-1.05"})
         balls +=

@@ -106,7 +106,7 @@ void check_pieces(const std::vector<std::string>& scenes) {
 }  // namespace
 
 TEST_CASE("with arcs the classic engine shows the exact one's picture but for edges",
-          "[laws][classic][law]") {
+          "[laws][classic][law][thorough]") {
     check_arcs({1}, shipped_scenes());
     check_arcs({2, 8}, kTellingScenes);
 }

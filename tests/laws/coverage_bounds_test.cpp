@@ -129,7 +129,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a pixel's coverage lies in its interval: cameras that are not linear", "[laws][law][coverage]") {
+TEST_CASE("a pixel's coverage lies in its interval: cameras that are not linear", "[laws][law][coverage][thorough]") {
     const auto world = shipped_world("cameras", 4, 16, 12);
     for (std::size_t camera = 0; camera < world->scene.cameras.size(); ++camera) {
         CAPTURE(camera);
@@ -142,7 +142,7 @@ TEST_CASE("a pixel's coverage lies in its interval: cameras that are not linear"
     }
 }
 
-TEST_CASE("a pixel's coverage lies in its interval: random scenes", "[laws][law][coverage]") {
+TEST_CASE("a pixel's coverage lies in its interval: random scenes", "[laws][law][coverage][thorough]") {
     CoverageTally all;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         const Quarry quarry = make_quarry(seed);

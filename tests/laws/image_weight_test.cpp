@@ -89,7 +89,7 @@ Tally compare(const World& world, int step) {
 
 }  // namespace
 
-TEST_CASE("an image of project weighs what the traced pixel's path does", "[laws][law]") {
+TEST_CASE("an image of project weighs what the traced pixel's path does", "[laws][law][thorough]") {
     std::size_t compared = 0, several = 0;
     for (const char* name :
          {"sphere", "water", "torus", "paths/crystal-ball", "paths/under-water", "paths/meniscus",

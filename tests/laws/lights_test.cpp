@@ -125,7 +125,7 @@ double rms_off(const Image& image, const std::vector<Vec3>& truth) {
 }  // namespace
 
 TEST_CASE("soft shadows, the sky's light and rough reflections converge to a path tracer's",
-          "[laws][law][oracle]") {
+          "[laws][law][oracle][thorough]") {
     const std::vector<Vec3> truth = reference();
     double before = 1;
     struct Limit {

@@ -103,7 +103,7 @@ void check_orders(const std::vector<OrderCase>& cases) {
 
 }  // namespace
 
-TEST_CASE("on smooth parts displacement falls with order 1.9 or more, whatever the path", "[laws][law]") {
+TEST_CASE("on smooth parts displacement falls with order 1.9 or more, whatever the path", "[laws][law][thorough]") {
     check_orders({{"sphere"},
                   {"torus"},
                   {"paths/crystal-ball"},

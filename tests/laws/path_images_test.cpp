@@ -60,7 +60,7 @@ Vec3 world_axis(int k) {
 }  // namespace
 
 TEST_CASE("a point that the truth shows over whole paths is projected to the pixel that shows it",
-          "[laws][law]") {
+          "[laws][law][thorough]") {
     const Renderer renderer(two_balls());
     PictureRequest truth;
     truth.engine = Engine::kLimitTruth;

@@ -147,7 +147,7 @@ TEST_CASE("a bake names its stages, its share never falls and ends at 1", "[radi
     CHECK(shares[shares.size() - 2] < 1);
 }
 
-TEST_CASE("baked light is that of a path tracer", "[radiosity][law]") {
+TEST_CASE("baked light is that of a path tracer", "[radiosity][law][thorough]") {
     const auto world = world_from("cornell", cornell_text(), 4);
     const Bake bake = bake_light(*world, {});
     const PathTracer truth(*world);
@@ -209,7 +209,7 @@ TEST_CASE("a baked scene's file is the scene that was baked", "[radiosity][law]"
     CHECK(scene_digest(bake.scene) != scene_digest(world->scene));
 }
 
-TEST_CASE("baked power is what came in, and the same bytes for any number of threads", "[radiosity][law]") {
+TEST_CASE("baked power is what came in, and the same bytes for any number of threads", "[radiosity][law][thorough]") {
     const auto world = world_from("cornell", cornell_text(kBalls), 6);
     set_thread_count(1);
     const Bake one = bake_light(*world, coarse_request());

@@ -133,7 +133,7 @@ constexpr Engine kBothEngines[] = {Engine::kExact, Engine::kLimitTruth};
 }  // namespace
 
 TEST_CASE("the white furnace: a rough mirror in a white sky shows GGX's albedo, never more than the sky",
-          "[laws][law][oracle]") {
+          "[laws][law][oracle][thorough]") {
     for (const double roughness : {0.05, 0.15, 0.3})
         for (const double height : {0.25, 1.0, 4.0}) {
             const Vec3 view = normalize(Vec3(1, 0, height));
@@ -153,7 +153,7 @@ TEST_CASE("the white furnace: a rough mirror in a white sky shows GGX's albedo, 
 }
 
 TEST_CASE("a rough mirror shows the edge of a wall as quadrature does, projected and traced",
-          "[laws][law][oracle]") {
+          "[laws][law][oracle][thorough]") {
     // A white wall beyond x = 0, five units before the mirror; the camera looks straight down, from nearer.
     const std::string wall = R"(, {"name": "wall", "role": "object", "material": "white",
         "points": [[0,-90,5],[90,-90,5],[90,90,5],[0,90,5]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3]})";
@@ -254,7 +254,7 @@ void check_edge(const Edge& edge) {
 }
 
 TEST_CASE("rough glass shows the edge of a wall, through it and in it, as quadrature of Walter's BSDF does",
-          "[laws][law][oracle]") {
+          "[laws][law][oracle][thorough]") {
     for (const double side : {1.0, -1.0})
         for (const bool reflects : {false, true})
             for (const double roughness : {0.1, 0.3})

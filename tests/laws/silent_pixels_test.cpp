@@ -125,7 +125,7 @@ void check_silent(const std::vector<SilentCase>& cases) {
 
 }  // namespace
 
-TEST_CASE("at n = 32 no projected pixel is off by more than a pixel, but at folds", "[laws][law]") {
+TEST_CASE("at n = 32 no projected pixel is off by more than a pixel, but at folds", "[laws][law][thorough]") {
     check_silent({{"paths/crystal-ball"},
                   {"paths/prism"},
                   {"paths/mirror-balls"},
@@ -143,7 +143,7 @@ TEST_CASE("nor through lenses, rings, a wine glass, water and in a bowl", "[.lon
                   {"paths/bowl"}});
 }
 
-TEST_CASE("nor where paths end at their first optic, whatever the corner rays", "[laws][law]") {
+TEST_CASE("nor where paths end at their first optic, whatever the corner rays", "[laws][law][thorough]") {
     const CornerRays fitted = CornerRays::kFitted, interpolated = CornerRays::kInterpolated;
     check_silent({{"flat", 32, 1, fitted},
                   {"sphere", 32, 2, interpolated},

@@ -172,17 +172,17 @@ Cage icosahedron() {
 
 }  // namespace
 
-TEST_CASE("search: no image is missing on the saddle mirror", "[laws][law]") {
+TEST_CASE("search: no image is missing on the saddle mirror", "[laws][law][thorough]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("saddle", world), SpecularEvent::kReflect, 1, 100, 400}, 1), 60);
 }
 
-TEST_CASE("search: no image is missing on the torus mirror", "[laws][law]") {
+TEST_CASE("search: no image is missing on the torus mirror", "[laws][law][thorough]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("torus", world), SpecularEvent::kReflect, 1, 50, 300}, 2), 600);
 }
 
-TEST_CASE("search: no image is missing through the torus as glass", "[laws][law]") {
+TEST_CASE("search: no image is missing through the torus as glass", "[laws][law][thorough]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("torus", world), SpecularEvent::kRefract, 1.5, 50, 300}, 3),
           150);
@@ -193,13 +193,13 @@ TEST_CASE("search: no image is missing on a piece with creases and extraordinary
     check(compare_with_brute_force({optic_of("piece", world), SpecularEvent::kReflect, 1, 40, 60}, 4), 200);
 }
 
-TEST_CASE("search: no image is missing on a Loop surface", "[laws][law]") {
+TEST_CASE("search: no image is missing on a Loop surface", "[laws][law][thorough]") {
     const auto surface = make_limit_surface(icosahedron(), "icosahedron", {});
     check(compare_with_brute_force({*surface, SpecularEvent::kReflect, 1, 60, 200}, 5), 200);
     check(compare_with_brute_force({*surface, SpecularEvent::kRefract, 1.7, 60, 200}, 6), 50);
 }
 
-TEST_CASE("search: no image is missing on primitives", "[laws][law]") {
+TEST_CASE("search: no image is missing on primitives", "[laws][law][thorough]") {
     Primitive primitive;
     primitive.axis = {0.2, 1, 0.1};
     unsigned seed = 10;

@@ -96,7 +96,7 @@ Outlines outlines_of(const World& world, const FrameParams& frame) {
 
 }  // namespace
 
-TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law]") {
+TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law][thorough]") {
     for (const double radius : {0.05, 0.1, 0.2})
         for (int i = 0; i < 6; i += 2) {
             const Vec3 at(-1.1 + 0.37 * i, 0.5 - 0.13 * i, -1 - 0.1 * i);
@@ -111,7 +111,7 @@ TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law]")
         }
 }
 
-TEST_CASE("A flat mirror shows a ball whatever error is asked for", "[laws][law]") {
+TEST_CASE("A flat mirror shows a ball whatever error is asked for", "[laws][law][thorough]") {
     for (const double radius : {0.04, 0.1})
         for (int i = 0; i < 4; ++i) {
             const auto world = whole_world_of(

@@ -152,7 +152,7 @@ std::size_t held_bytes() {
 }  // namespace
 
 TEST_CASE("where memory runs out once, an error comes of it, no leak, and all goes on",
-          "[memory][bad-input][law]") {
+          "[memory][bad-input][law][thorough]") {
     set_threads(1);
     for (const Task& task : tasks(trilens_test::scratch_dir("allocation"))) {
         const std::string expected = task.work();

@@ -163,7 +163,7 @@ TEST_CASE("a prism turns least where light passes it symmetrically", "[paths][or
 }
 
 TEST_CASE("a ball lens of either kind of surface: where the ray leaves and whither, by angles",
-          "[paths][oracle]") {
+          "[paths][oracle][thorough]") {
     Random random(34);
     const std::shared_ptr<const Surface> faces =
         std::make_shared<ProjectedSphere>(FaceDomain::kSquare, Vec3(0), 1);

@@ -85,7 +85,7 @@ void check_energy(bool fresnel, double dispersion, double least, std::uint64_t s
 }  // namespace
 
 TEST_CASE("without absorption the ends of all paths, with what was cut, add up to all the light",
-          "[paths][law]") {
+          "[paths][law][thorough]") {
     SECTION("Fresnel") {
         check_energy(true, 0, kLeastWeight, 41);
     }

@@ -58,7 +58,7 @@ double over_samples(const RoughSurface& surface, const std::function<double(cons
 
 }  // namespace
 
-TEST_CASE("visible normals are distributed as their density, which is one in all", "[shade][oracle]") {
+TEST_CASE("visible normals are distributed as their density, which is one in all", "[shade][oracle][thorough]") {
     for (const double roughness : kRoughnesses)
         for (const double cosine : kCosines) {
             INFO("roughness " << roughness << ", cosine " << cosine);

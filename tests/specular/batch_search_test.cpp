@@ -56,7 +56,7 @@ std::vector<Vec3> scattered(Draw& draw, int count, double low, double high) {
 
 }  // namespace
 
-TEST_CASE("many points in one search have each the list that it has alone", "[specular][oracle][many]") {
+TEST_CASE("many points in one search have each the list that it has alone", "[specular][oracle][many][thorough]") {
     Draw draw(81);
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
@@ -129,7 +129,7 @@ TEST_CASE("points side by side have most of the work in common", "[specular]") {
 }
 
 TEST_CASE("points that a sphere lights, shades or hides have the lists that they have alone",
-          "[specular][oracle][many]") {
+          "[specular][oracle][many][thorough]") {
     Draw draw(88);
     const CubeSphere sphere({0.1, -0.2, 0.3}, 0.7);
     const SpecularSearcher searcher(sphere);
