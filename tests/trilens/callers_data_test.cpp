@@ -296,6 +296,18 @@ TEST_CASE("sweeps and suites refuse requests that are none", "[trilens][bad-inpu
             only_errors("point_text", [&] { point_text(point); });
             only_errors("find_coordinate", [&] { find_coordinate(point, text); });
         }
+        only_errors("load_point_scene", [&] {
+            PointRequest request;
+            request.scene.file = text;
+            request.optic = text;
+            load_point_scene(request);
+        });
+        only_errors("load_point_scene", [&] {
+            PointRequest request;
+            request.loaded = callers_scene();
+            request.camera_facets = 8;
+            load_point_scene(request);
+        });
         only_errors("farm_script", [&] { farm_script({text, -1, text, text, {text}, {}}); });
         only_errors("truth_file", [&] { truth_file(text, text), run_folder(text, text); });
         only_errors("without_axis", [&] { without_axis({}, text); });
