@@ -304,7 +304,7 @@ TEST_CASE("sweeps and suites refuse requests that are none", "[trilens][bad-inpu
         });
         only_errors("load_point_scene", [&] {
             PointRequest request;
-            request.loaded = callers_scene();
+            request.loaded = std::make_shared<const Scene>(callers_scene());
             request.camera_facets = 8;
             load_point_scene(request);
         });
