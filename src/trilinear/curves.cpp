@@ -44,15 +44,15 @@ std::vector<TrianglePiece> tessellate(const SceneTriangle& triangle, int pieces)
 
 // The image of a piece of a scene edge as exact conic arcs, built from two points, the conic and one point
 // between. The control point is the pole of the chord (Farin, Curves and Surfaces for CAGD, chapter on
-// conics).
+// conics). Nothing here divides by a difference of t: where the edge is parallel to the parametric triangle,
+// t tells its points apart by rounding alone.
 
 namespace {
 
 // A tangent that passes the other end at less than this share of the chord is the chord itself.
 constexpr double kStraight = 1e-12;
 
-// Halving a stretch of t that often reaches neighbouring doubles; a conic needs a few arcs, and more only
-// where rounding hides it.
+// A conic needs a few arcs, and more only where rounding hides it.
 constexpr int kDeepest = 60;
 constexpr std::size_t kMostArcs = 200;
 
@@ -95,33 +95,130 @@ std::optional<ConicArc> single_arc(const Mat3& form, const Vec3& p0, const Vec3&
     return ConicArc{{p0, control, p2}, 0, 0};
 }
 
-struct EdgeImage {
-    const Coplanarity& facet;
-    const Vec3 &a, &b;
-    Mat3 form;
+// Weights below zero by no more than this are on the border.
+constexpr double kTouching = 1e-9;
 
-    std::optional<Vec3> at(double t) const {
-        return weights_in_parametric_triangle(facet, t, cut_edge(facet, t, a, b).point);
-    }
+// How far rounding of a long arc may put its crossing with the border; what is farther along the border is
+// another one.
+constexpr double kFarthestMove = 1e-6;
 
-    void append(double t0, const Vec3& p0, double t1, const Vec3& p1, int depth,
-                std::vector<ConicArc>& arcs) const {
-        const double middle = 0.5 * (t0 + t1);
-        const std::optional<Vec3> m = at(middle);
-        std::optional<ConicArc> arc;
-        if (m) arc = single_arc(form, p0, *m, p1);
-        if (!arc && (depth == kDeepest || arcs.size() >= kMostArcs || !m || middle <= t0 || middle >= t1)) {
-            arc = ConicArc{{p0, 0.5 * (p0 + p1), p1}, 0, 0};
-        }
+struct ArcEnd {
+    double t;
+    Vec3 weights;
+};
+
+// The image of the line through a and b.
+class EdgeImage {
+  public:
+    EdgeImage(const Coplanarity& facet, const Vec3& a, const Vec3& b)
+        : facet_(facet), a_(a), along_(b - a), form_(conic_form(facet, a, b)) {}
+
+    // Appends the arcs between two of its points, of which `from` has the smaller t.
+    void append(const ArcEnd& from, const ArcEnd& to, int depth, std::vector<ConicArc>& arcs) const {
+        const ArcEnd middle = between(from, to);
+        std::optional<ConicArc> arc = single_arc(form_, from.weights, middle.weights, to.weights);
+        if (!arc && (depth == kDeepest || arcs.size() >= kMostArcs))
+            arc = ConicArc{{from.weights, 0.5 * (from.weights + to.weights), to.weights}, 0, 0};
         if (arc) {
-            arc->t0 = t0, arc->t1 = t1;
+            arc->t0 = from.t, arc->t1 = to.t;
             arcs.push_back(*arc);
             return;
         }
-        append(t0, p0, middle, *m, depth + 1, arcs);
-        append(middle, *m, t1, p1, depth + 1, arcs);
+        append(from, middle, depth + 1, arcs);
+        append(middle, to, depth + 1, arcs);
     }
+
+    // The point of the image on the facet's border `k`, near weights that an arc has there.
+    ArcEnd on_border(Vec3 near, int k, const ConicArc& arc) const {
+        Vec3 along_border(0);
+        along_border[(k + 1) % 3] = 1, along_border[(k + 2) % 3] = -1;
+        near[(k + 2) % 3] = 1 - near[(k + 1) % 3], near[k] = 0;
+        const std::vector<double> found = crossings(near, along_border);
+        const bool is_near = !found.empty() && std::fabs(found[0]) <= kFarthestMove;
+        const Vec3 weights = is_near ? near + found[0] * along_border : near;
+        return {t_of(weights, arc.t0, arc.t1), weights};
+    }
+
+  private:
+    // A line across the chord meets the conic in one point of the arc from end to end, which is bounded, and
+    // in one of the rest: the arc's is that whose ray touches the edge between the ends' t. The chord is
+    // halved as an angle of homogeneous weights, so that of far ends the point is one near the facet.
+    ArcEnd between(const ArcEnd& from, const ArcEnd& to) const {
+        const Vec3 one = normalize_or_zero(from.weights), other = normalize_or_zero(to.weights),
+                   middle = one + other, across = cross(one, other);
+        ArcEnd best{0.5 * (from.t + to.t), middle / sum(middle)};
+        double least_miss = HUGE_VAL;
+        for (const double v : crossings(middle, across)) {
+            const Vec3 weights = (middle + v * across) / sum(middle + v * across);
+            const double t = t_of(weights, from.t, to.t), miss = miss_of(weights, t);
+            if (miss < least_miss) best = {t, weights}, least_miss = miss;
+        }
+        return best;
+    }
+
+    // The v at which start + v way is on the conic, the one nearer zero first; that nearest to the conic
+    // where rounding leaves none.
+    std::vector<double> crossings(const Vec3& start, const Vec3& way) const {
+        const Vec3 by_way = form_ * way;
+        const double square = dot(way, by_way), half = dot(start, by_way),
+                     constant = dot(start, form_ * start);
+        const double far =
+            half + std::copysign(std::sqrt(std::max(0.0, half * half - square * constant)), half);
+        std::vector<double> found;
+        for (const double v : {-constant / far, -far / square})
+            if (std::isfinite(v)) found.push_back(v);
+        return found;
+    }
+
+    // Where the ray passes the edge: closest approach, with the edge's own direction taken out.
+    double t_of(const Vec3& weights, double low, double high) const {
+        const Vec3 across = without_along(direction(weights));
+        const double t = -dot(across, origin(weights)) / dot(across, across);
+        return t >= low && t <= high ? t : t > high ? high : low;
+    }
+    double miss_of(const Vec3& weights, double t) const {
+        return length(without_along(origin(weights) + t * direction(weights)));
+    }
+    Vec3 without_along(const Vec3& v) const { return v - along_ * (dot(v, along_) / dot(along_, along_)); }
+    Vec3 origin(const Vec3& w) const { return facet_.origin - a_ + w.y * facet_.e1 + w.z * facet_.e2; }
+    Vec3 direction(const Vec3& w) const { return facet_.direction + w.y * facet_.f1 + w.z * facet_.f2; }
+
+    const Coplanarity& facet_;
+    Vec3 a_, along_;
+    Mat3 form_;
 };
+
+EdgeImage image_of(const Coplanarity& facet, const SceneTriangle& triangle, const Section& side) {
+    const Vec3 *a = &triangle.from(static_cast<std::size_t>(side.edge)),
+               *b = &triangle.to(static_cast<std::size_t>(side.edge));
+    return canonically_before(*b, *a) ? EdgeImage(facet, *b, *a) : EdgeImage(facet, *a, *b);
+}
+
+// Where an arc crosses border `border` (-1: an end of the arc).
+struct ArcCut {
+    double u = 0;
+    int border = -1;
+};
+
+// From 0 to 1, ascending.
+std::vector<ArcCut> border_cuts(const ConicArc& arc) {
+    const auto& [c0, c1, c2] = arc.control;
+    std::vector<ArcCut> cuts{{0, -1}};
+    for (int k = 0; k < 3; ++k)
+        for (const double u : real_roots({c0[k], 2 * (c1[k] - c0[k]), (c0[k] - c1[k]) + (c2[k] - c1[k]), 0}))
+            if (u > 0 && u < 1) cuts.push_back({u, k});
+    std::sort(cuts.begin(), cuts.end(),
+              [](const ArcCut& a, const ArcCut& b) { return a.u != b.u ? a.u < b.u : a.border < b.border; });
+    cuts.push_back({1, -1});
+    return cuts;
+}
+
+bool is_beyond_border(const ConicArc& arc) {
+    const auto& [c0, c1, c2] = arc.control;
+    for (int k = 0; k < 3; ++k)
+        if (std::max({c0[k], c1[k], c2[k]}) < -kTouching) return true;
+    return false;
+}
 
 }  // namespace
 
@@ -145,15 +242,41 @@ Mat3 conic_form(const Coplanarity& facet, const Vec3& a, const Vec3& b) {
     return form;
 }
 
-std::vector<ConicArc> edge_arcs(const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge,
-                                double t0, double t1) {
-    const Vec3 *a = &triangle.from(edge), *b = &triangle.to(edge);
-    if (canonically_before(*b, *a)) std::swap(a, b);
-    const EdgeImage image{facet, *a, *b, conic_form(facet, *a, *b)};
-    const std::optional<Vec3> p0 = image.at(t0), p1 = image.at(t1);
+std::vector<ConicArc> edge_arcs(const Coplanarity& facet, const SceneTriangle& triangle,
+                                const Section& side) {
+    ArcEnd from{side.from.t, side.from.weights}, to{side.to.t, side.to.weights};
+    if (from.t != to.t ? to.t < from.t : canonically_before(to.weights, from.weights)) std::swap(from, to);
     std::vector<ConicArc> arcs;
-    if (p0 && p1) image.append(t0, *p0, t1, *p1, 0, arcs);
+    image_of(facet, triangle, side).append(from, to, 0, arcs);
     return arcs;
+}
+
+std::vector<ConicArc> edge_arcs_inside(const Coplanarity& facet, const SceneTriangle& triangle,
+                                       const Section& side) {
+    const EdgeImage image = image_of(facet, triangle, side);
+    std::vector<ConicArc> inside;
+    for (const ConicArc& arc : edge_arcs(facet, triangle, side)) {
+        if (is_beyond_border(arc)) continue;
+        const std::vector<ArcCut> cuts = border_cuts(arc);
+        const auto is_inside = [&](std::size_t i) {
+            const Vec3 w = arc.weights(0.5 * (cuts[i].u + cuts[i + 1].u));
+            return std::min({w.x, w.y, w.z}) >= -kTouching;
+        };
+        const auto end_at = [&](const ArcCut& cut) {
+            if (cut.border >= 0) return image.on_border(arc.weights(cut.u), cut.border, arc);
+            return cut.u == 0 ? ArcEnd{arc.t0, arc.control[0]} : ArcEnd{arc.t1, arc.control[2]};
+        };
+        for (std::size_t i = 0, next = 0; i + 1 < cuts.size(); i = next) {
+            next = i + 1;
+            if (!is_inside(i)) continue;
+            while (next + 1 < cuts.size() && is_inside(next)) ++next;
+            if (cuts[i].border < 0 && cuts[next].border < 0)
+                inside.push_back(arc);
+            else
+                image.append(end_at(cuts[i]), end_at(cuts[next]), 0, inside);
+        }
+    }
+    return inside;
 }
 
 std::array<Vec3, 3> on_screen(const ConicArc& arc, const Mat3& screen) {

@@ -39,10 +39,7 @@ class Pen {
             return slice_ends(pair_.cubic, pair_.triangle, edge, {s.from.t, s.to.t}, params_.pieces);
         }
         std::vector<ImageVertex> vertices;
-        for (const ConicArc& arc : edge_arcs(pair_.cubic, pair_.triangle, edge, std::min(s.from.t, s.to.t),
-                                             std::max(s.from.t, s.to.t))) {
-            flatten(arc, edge, 0, vertices);
-        }
+        for (const ConicArc& arc : edge_arcs(pair_.cubic, pair_.triangle, s)) flatten(arc, edge, 0, vertices);
         if (!vertices.empty()) vertices.pop_back();
         if (s.from.t > s.to.t) std::reverse(vertices.begin(), vertices.end());
         return vertices;

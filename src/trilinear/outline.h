@@ -58,6 +58,17 @@ std::vector<Window> view_windows(const Coplanarity& facet, const SceneTriangle& 
 inline constexpr double kCollapsed = 1e-9;
 inline constexpr double kCollapseGap = 1e-6;
 
+/// A part of a shape's border: from one vertex to another, along a scene edge or (kSlice) straight.
+struct Section {
+    ImageVertex from, to;
+    int edge = kSlice;
+};
+
+/// Whether the section lies in one slice: its image is straight, and t does not tell its points apart. So
+/// does the image of a scene edge that is parallel to the parametric triangle: its two ends have one root, up
+/// to rounding.
+bool is_level(const Section& section);
+
 // Images of scene edges: exact conic arcs as rational quadratic Bezier curves (mathematics, section 2), and
 // straight pieces as the thesis draws them (Vallance 2005, section 4.5 and chapter 5).
 
@@ -106,11 +117,17 @@ inline constexpr double kLeastBezierWeight = 0.26;
 /// through a and b. Exchanging a and b changes its sign and no other bit.
 Mat3 conic_form(const Coplanarity& facet, const Vec3& a, const Vec3& b);
 
-/// The images of the cuts of a triangle's edge at t0 <= t <= t1, t ascending, as arcs joined end to end. The
-/// edge must be cut throughout: t0 and t1 lie on one joined piece of a shape. Two triangles that share the
-/// edge get the same arcs.
-std::vector<ConicArc> edge_arcs(const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge,
-                                double t0, double t1);
+/// The image of a piece of a triangle's edge as arcs joined end to end, t ascending. The ends lie on one
+/// joined piece of a shape, and are the arcs' own ends: their weights place the arcs, and their t, which may
+/// be equal or differ by rounding alone (an edge parallel to the parametric triangle), only chooses between
+/// the two ways around the conic. Two triangles that share the edge get the same arcs. `side.edge` is no
+/// slice.
+std::vector<ConicArc> edge_arcs(const Coplanarity& facet, const SceneTriangle& triangle, const Section& side);
+
+/// The parts of these arcs whose weights are all >= 0 up to rounding: cut where the arcs themselves cross the
+/// facet's border, so that no t decides. What runs along the border is inside.
+std::vector<ConicArc> edge_arcs_inside(const Coplanarity& facet, const SceneTriangle& triangle,
+                                       const Section& side);
 
 /// The arc on the homogeneous screen, for corners at the columns (x w, y w, w): the control points of a
 /// rational quadratic Bezier curve, whose Bezier weights are the third components.
@@ -131,17 +148,6 @@ struct FacetAndTriangle {
     const Coplanarity& cubic;
     const SceneTriangle& triangle;
 };
-
-/// A part of a shape's border: from one vertex to another, along a scene edge or (kSlice) straight.
-struct Section {
-    ImageVertex from, to;
-    int edge = kSlice;
-};
-
-/// Whether the section lies in one slice: its image is straight, and t does not tell its points apart. So
-/// does the image of a scene edge that is parallel to the parametric triangle: its two ends have one root, up
-/// to rounding.
-bool is_level(const Section& section);
 
 /// The part of each shape whose weights are all >= 0. A section is a piece of a shape's border between two
 /// neighbours among its vertices and the points where it crosses the facet's borders; these crossings are

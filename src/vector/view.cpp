@@ -56,7 +56,7 @@ class FacetPen {
         const IdTriple& c = view_.scene.triangles[index];
         return {{view_.scene.points[c[0]], view_.scene.points[c[1]], view_.scene.points[c[2]]}};
     }
-    std::vector<Section> sections(const SceneTriangle& scene_triangle) const;
+    std::vector<Section> sides(const SceneTriangle& scene_triangle, std::size_t edge) const;
     void cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>& curves) const;
     Sight sight(const Edge& edge, const Vec3& weights) const;
     Sight among_samples(const Edge& edge, const Vec3& weights, const Vec2& at) const;
@@ -98,35 +98,23 @@ std::vector<Id> FacetPen::candidates(std::span<const Id> samples) const {
     return found;
 }
 
-/// Pieces of the triangle's edges inside the facet, t >= 0.
-std::vector<Section> FacetPen::sections(const SceneTriangle& scene_triangle) const {
-    std::vector<Shape> shapes;
+/// The sides of the triangle's shapes along one of its edges, t >= 0.
+std::vector<Section> FacetPen::sides(const SceneTriangle& scene_triangle, std::size_t edge) const {
+    std::vector<Section> sides;
     for (const Window& window : view_windows(cubic_, scene_triangle))
-        for (Shape& shape : make_shapes(cubic_, scene_triangle, window)) shapes.push_back(std::move(shape));
-    const ClippedShapes clipped = clip_in_scene({rays_, cubic_, scene_triangle}, shapes);
-    std::vector<Section> sections;
-    if (clipped.clean) {
-        for (const auto& ring : clipped.closed) sections.insert(sections.end(), ring.begin(), ring.end());
-        for (const auto& chain : clipped.chains) sections.insert(sections.end(), chain.begin(), chain.end());
-        return sections;
-    }
-    // A touching case: whole edges, which the tests along them cut at the border.
-    for (const Shape& shape : shapes)
-        for (std::size_t i = 0; i < shape.size(); ++i)
-            sections.push_back({shape[i].at, shape[(i + 1) % shape.size()].at, shape[i].edge});
-    return sections;
+        for (const Shape& shape : make_shapes(cubic_, scene_triangle, window))
+            for (std::size_t i = 0; i < shape.size(); ++i)
+                if (shape[i].edge == static_cast<int>(edge))
+                    sides.push_back({shape[i].at, shape[(i + 1) % shape.size()].at, shape[i].edge});
+    return sides;
 }
 
 void FacetPen::draw(const DrawnEdge& drawn, std::vector<EdgeCurve>& curves) const {
     const SceneTriangle scene_triangle = triangle(drawn.triangle);
     if (!may_image(rays_, scene_triangle)) return;
     const Edge edge{drawn, scene_triangle.from(drawn.edge), scene_triangle.to(drawn.edge)};
-    for (const Section& section : sections(scene_triangle)) {
-        if (section.edge != static_cast<int>(drawn.edge) || section.from.t == section.to.t) continue;
-        const double t0 = std::min(section.from.t, section.to.t), t1 = std::max(section.from.t, section.to.t);
-        for (const ConicArc& arc : edge_arcs(cubic_, scene_triangle, drawn.edge, t0, t1))
-            cut(edge, arc, curves);
-    }
+    for (const Section& side : sides(scene_triangle, drawn.edge))
+        for (const ConicArc& arc : edge_arcs_inside(cubic_, scene_triangle, side)) cut(edge, arc, curves);
 }
 
 /// Appends the arc's shown pieces; a piece that begins where the last curve ended continues it.

@@ -25,7 +25,7 @@ double off_conic(const Mat3& form, const Vec3& w) {
     return size > 0 ? std::fabs(value) / size : 0;
 }
 
-// Calls visit(facet, triangle, edge, t0, t1) for the curved sections of random shapes.
+// Calls visit(facet, triangle, side) for the curved sections of random shapes.
 template <typename Visit>
 void for_random_sections(std::uint64_t seed, int trials, const Visit& visit) {
     Random random(seed);
@@ -39,10 +39,9 @@ void for_random_sections(std::uint64_t seed, int trials, const Visit& visit) {
         for (const Window& window : view_windows(facet, triangle)) {
             for (const Shape& shape : make_shapes(facet, triangle, window)) {
                 for (std::size_t i = 0; i < shape.size(); ++i) {
-                    const double a = shape[i].at.t, b = shape[(i + 1) % shape.size()].at.t;
-                    if (shape[i].edge == kSlice || a == b) continue;
-                    visit(facet, triangle, static_cast<std::size_t>(shape[i].edge), std::min(a, b),
-                          std::max(a, b));
+                    if (shape[i].edge == kSlice) continue;
+                    visit(facet, triangle,
+                          Section{shape[i].at, shape[(i + 1) % shape.size()].at, shape[i].edge});
                 }
             }
         }
@@ -73,12 +72,13 @@ TEST_CASE("conic arcs: sampled points lie on the conic and on the edge's image",
     int arcs = 0, most = 0, sections = 0;
     double worst_conic = 0, worst_far = 0, worst_place = 0, worst_join = 0;
     for_random_sections(
-        2, 3000,
-        [&](const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge, double t0, double t1) {
-            const std::vector<ConicArc> found = edge_arcs(facet, triangle, edge, t0, t1);
+        2, 3000, [&](const Coplanarity& facet, const SceneTriangle& triangle, const Section& side) {
+            const std::size_t edge = static_cast<std::size_t>(side.edge);
+            const std::vector<ConicArc> found = edge_arcs(facet, triangle, side);
             const Vec3 &a = triangle.from(edge), &b = triangle.to(edge);
             const Mat3 form = conic_form(facet, a, b);
             if (found.empty()) FAIL("no arcs");
+            const auto [t0, t1] = std::minmax(side.from.t, side.to.t);
             if (found.front().t0 != t0 || found.back().t1 != t1) FAIL("ends of t");
             ++sections, arcs += static_cast<int>(found.size()),
                 most = std::max(most, static_cast<int>(found.size()));
@@ -117,11 +117,11 @@ TEST_CASE("conic arcs: sampled points lie on the conic and on the edge's image",
 
 TEST_CASE("conic arcs: two triangles that share an edge get the same arcs", "[trilinear][conic_arc]") {
     for_random_sections(
-        3, 500,
-        [&](const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge, double t0, double t1) {
+        3, 500, [&](const Coplanarity& facet, const SceneTriangle& triangle, const Section& side) {
+            const std::size_t edge = static_cast<std::size_t>(side.edge);
             const SceneTriangle turned{{triangle.to(edge), triangle.from(edge), Vec3(7, 8, 9)}};
-            const std::vector<ConicArc> one = edge_arcs(facet, triangle, edge, t0, t1);
-            const std::vector<ConicArc> other = edge_arcs(facet, turned, 0, t0, t1);
+            const std::vector<ConicArc> one = edge_arcs(facet, triangle, side);
+            const std::vector<ConicArc> other = edge_arcs(facet, turned, {side.to, side.from, 0});
             REQUIRE(one.size() == other.size());
             for (std::size_t i = 0; i < one.size(); ++i) {
                 if (one[i].control != other[i].control) FAIL("arc " << i);
@@ -133,9 +133,9 @@ TEST_CASE("conic arcs: halving converges to the curve, and the screen keeps it",
           "[trilinear][conic_arc][law]") {
     const Mat3 screen(Vec3(10, 20, 1), Vec3(600, 40, 2), Vec3(100, 900, 3));
     for_random_sections(
-        4, 300,
-        [&](const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge, double t0, double t1) {
-            for (const ConicArc& arc : edge_arcs(facet, triangle, edge, t0, t1)) {
+        4, 300, [&](const Coplanarity& facet, const SceneTriangle& triangle, const Section& side) {
+            const std::size_t edge = static_cast<std::size_t>(side.edge);
+            for (const ConicArc& arc : edge_arcs(facet, triangle, side)) {
                 const Vec3 &a = triangle.from(edge), &b = triangle.to(edge);
                 const std::array<ConicArc, 2> half = halves(arc, facet, a, b);
                 // Quarter the sagitta, in the limit; never more than 0.6 of it for arcs of this Bezier weight
