@@ -108,7 +108,7 @@ std::string description(const Drawing& drawing) {
                            ? "Wire drawing: hidden edges are drawn too. "
                            : "Hidden edges are removed by testing points about 0.4 px apart against "
                              "a picture of 2 x 2 samples per pixel: visible "
-                             "pieces end right to about half a pixel, and edges whose camera_media "
+                             "pieces end right to about half a pixel, and edges whose surroundings "
                              "are thinner than a sample may be missing. ";
     text +=
         "Drawn are borders, creases, changes of material and silhouettes of the polygons, as the first optic "
