@@ -248,19 +248,16 @@ void bind_map(RendererClass& renderer) {
         "A map between the film and a target, pixel by pixel.\n\n"
         "to, center, proxy, optic, progress: as in unwrap; path too, for the way \"unwrap\" alone.\n"
         "way: \"unwrap\": of the target's size, with places on the film; \"view\": of the film's size, with "
-        "places on "
-        "the\ntarget, by exact rays.\n"
+        "places on the\ntarget: exactly the pixels whose own ray, as shoot follows it, shows it.\n"
         "word: for the way \"view\" alone, the events to follow, as in shoot.\n"
-        "tolerance: source pixels that places between exact ones may be off.\n"
+        "tolerance: source pixels that places between exact ones may be off; of a view, whose places are all "
+        "exact, that the\nderivatives' lattice may be off them.\n"
         "file: written too: .exr (STMap), .npz (for cv2.remap) or .pgm (two files, for ffmpeg's remap).\n"
         "Returns a dict of arrays (height, width): x and y, float32, where to look, pixels from the source's "
-        "top left, "
-        "a pixel's\ncentre at .5, -1 where nothing is; valid, bool; jacobian (height, width, 2, 2): [[dx/dx, "
-        "dx/dy], "
-        "[dy/dx, dy/dy]],\nsource pixels per pixel.\n"
+        "top left, a pixel's\ncentre at .5, -1 where nothing is; valid, bool; jacobian (height, width, 2, "
+        "2): [[dx/dx, dx/dy], [dy/dx, dy/dy]],\nsource pixels per pixel.\n"
         "Raises UsageError for what the scene does not have and a path or a word with the other way,\n"
-        "InputError where nothing is mapped, "
-        "OutputError.");
+        "InputError where nothing is mapped, OutputError.");
     renderer.def(
         "warp_mesh",
         [](const Renderer& self, const std::string& to, int columns, int rows, const Name& camera,

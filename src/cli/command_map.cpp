@@ -127,7 +127,7 @@ Command map_command() {
            .target = &options->way,
            .help =
                "unwrap: of the target's size, warps photographs into it (the default); view: of the film's "
-               "size, warps pictures of the target into what the camera sees",
+               "size, warps pictures of the target into what the camera sees, by every pixel's own ray",
            .choices = {"unwrap", "view"}},
           {.names = "--word",
            .target = &options->word,
@@ -136,7 +136,8 @@ Command map_command() {
            .value = "WORD"},
           {.names = "--tolerance",
            .target = &options->tolerance,
-           .help = "source pixels that places between exact ones may be off",
+           .help = "source pixels that places between exact ones may be off (of a view all are exact: that "
+                   "the derivatives' lattice may be off them)",
            .range = {1e-9, 100}},
           {.names = "--mesh",
            .target = &options->mesh,

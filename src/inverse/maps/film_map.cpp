@@ -1,6 +1,7 @@
 #include "inverse/maps/film_map.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
@@ -14,6 +15,7 @@ namespace trilens {
 namespace {
 
 constexpr std::size_t kFewestRays = 256;  // shot between two looks at whether to stop
+constexpr double kShareOfRays = 0.7;      // of a view's time: the pixels' own rays
 
 FilmMap empty_map(int width, int height, int source_width, int source_height) {
     FilmMap map;
@@ -29,6 +31,7 @@ FilmMap empty_map(int width, int height, int source_width, int source_height) {
     return map;
 }
 
+/// Of several images of a pixel the best resolved.
 void fill(const SampledMap& sampled, FilmMap& map) {
     sampled.for_each_pixel([&](int x, int y, std::span<const MapImage> images) {
         if (images.empty()) return;
@@ -42,6 +45,66 @@ void fill(const SampledMap& sampled, FilmMap& map) {
     });
     map.exact_places = sampled.exact_count();
     map.worst_accepted = sampled.worst_accepted();
+}
+
+/// Where a target lies on a film, or the other way round.
+struct MapMaker {
+    const World& world;
+    const FilmMapRequest& request;
+    const Target& target;
+    const Proxy& proxy;
+    const Progress& progress;
+
+    FilmMap unwrap() const;
+    FilmMap view() const;
+};
+
+FilmMap MapMaker::unwrap() const {
+    const FilmImagesParams params{request.frame, request.optic,
+                                  request.path,  !target.has_directions() || proxy.asks_visibility(),
+                                  false,         progress.cancel};
+    const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
+        find_film_images(world, params, world_places(target, proxy, pixels), images);
+    };
+    const int wide = request.target.width, high = request.target.height;
+    FilmMap map = empty_map(wide, high, world.scene.film.width, world.scene.film.height);
+    fill(SampledMap({wide, high, first_cell(params.visibility), request.tolerance}, evaluate, progress), map);
+    if (map.valid_count() == 0)
+        throw InputError(scene_title(world.scene), "",
+                         "nothing of the target is seen on the film within an optic");
+    return map;
+}
+
+/// Every pixel's own ray says whether it shows the target, and where; the lattice, how that changes.
+FilmMap MapMaker::view() const {
+    FilmTargetsParams params;
+    params.shoot = {request.frame.camera, request.word};
+    params.optic = request.optic;
+    params.over_optics = !world.optics.empty();
+    ShownPixels shown = find_shown_pixels(world, params, target, proxy, progress.part(0, kShareOfRays));
+    if (std::ranges::all_of(shown.history, [](std::uint64_t history) { return history == 0; }))
+        throw InputError(scene_title(world.scene), "",
+                         "the film shows nothing of the target in the middle of any pixel");
+
+    const Progress rest = progress.part(kShareOfRays, 1 - kShareOfRays);
+    const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
+        Portions portions(kFewestRays, pixels.size());
+        for (std::size_t first = 0, count = 0; first < pixels.size(); first += count) {
+            rest.stop_if_cancelled();
+            count = portions.next(pixels.size() - first);
+            find_film_targets(world, params, target, proxy, pixels.subspan(first, count),
+                              images.subspan(first, count));
+        }
+    };
+    const Film& film = world.scene.film;
+    FilmMap map = empty_map(film.width, film.height, request.target.width, request.target.height);
+    fill(SampledMap({map.width, map.height, first_cell(false), request.tolerance}, evaluate, rest,
+                    {shown.x, shown.y, shown.history}),
+         map);
+    map.x = std::move(shown.x);
+    map.y = std::move(shown.y);
+    map.exact_places = map.valid.size();
+    return map;
 }
 
 }  // namespace
@@ -74,41 +137,12 @@ FilmMap make_film_map(const World& world, const FilmMapRequest& request, const P
     check_target_request(world, request);
     const Target target(request.target, world.scene);
     const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));
-    const Film& film = world.scene.film;
-    const int wide = request.target.width, high = request.target.height;
     const bool unwraps = request.way == MapWay::kUnwrap;
     if (!unwraps && request.path) throw UsageError("a path goes with the way unwrap; a view takes a word");
     if (unwraps && request.word.asks())
         throw UsageError("a word of events goes with the way view; an unwrap takes a path");
-
-    const FilmImagesParams to_film{request.frame, request.optic,
-                                   request.path,  !target.has_directions() || proxy.asks_visibility(),
-                                   false,         progress.cancel};
-    FilmTargetsParams from_film;
-    from_film.shoot = {request.frame.camera, request.word};
-    from_film.optic = request.optic;
-    from_film.over_optics = !world.optics.empty();
-    const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
-        Portions portions(kFewestRays, pixels.size());
-        for (std::size_t first = 0, count = 0; !unwraps && first < pixels.size(); first += count) {
-            progress.stop_if_cancelled();
-            count = portions.next(pixels.size() - first);
-            find_film_targets(world, from_film, target, proxy, pixels.subspan(first, count),
-                              images.subspan(first, count));
-        }
-        if (!unwraps) return;
-        find_film_images(world, to_film, world_places(target, proxy, pixels), images);
-    };
-    FilmMap map = unwraps ? empty_map(wide, high, film.width, film.height)
-                          : empty_map(film.width, film.height, wide, high);
-    fill(SampledMap({map.width, map.height, first_cell(unwraps && to_film.visibility), request.tolerance},
-                    evaluate, progress),
-         map);
-    if (map.valid_count() == 0)
-        throw InputError(scene_title(world.scene), "",
-                         unwraps ? "nothing of the target is seen on the film within an optic"
-                                 : "the film shows nothing of the target");
-    return map;
+    const MapMaker maker{world, request, target, proxy, progress};
+    return unwraps ? maker.unwrap() : maker.view();
 }
 
 }  // namespace trilens

@@ -37,7 +37,8 @@ struct TargetRequest {
     std::optional<Vec3> center;        // of these: where directions start; none: the middle of the optic
     std::optional<std::size_t> optic;  // index into World::optics; none: any
     std::optional<Path> path;          // not of views; none: reflected by mirrors, refracted by glass
-    double tolerance = 0.01;           // pixels of the source that interpolated places may be off
+    double tolerance = 0.01;           // pixels of the source that interpolated places may be off; of a
+                                       // view, the lattice that its derivatives are read from
     FrameParams frame;
 };
 
@@ -56,13 +57,15 @@ struct FilmMap {
     std::vector<float> x, y;  // pixels from the source's top left, a pixel's centre at .5; -1 where none
     std::vector<float> jacobian[4];  // dx/dx, dx/dy, dy/dx, dy/dy: source pixels per pixel
     std::vector<unsigned char> valid;
-    std::size_t exact_places = 0;
-    double worst_accepted = 0;  // source pixels that an interpolated place was found to be off
+    std::size_t exact_places = 0;  // of a view, all
+    double worst_accepted = 0;     // source pixels that the lattice was found to be off between exact places
 
     std::size_t valid_count() const;
 };
 
-/// Where a place is seen several times, the best resolved image is taken. Throws UsageError for what the
+/// A view has exactly the pixels whose rays, as shoot_places follows them through their middles, show the
+/// target, and the places that these end at. Of an unwrap, where a place is seen several times, the best
+/// resolved image is taken. Throws UsageError for what the
 /// scene does not have, a path of a view and a word of an unwrap, InputError where nothing is mapped;
 /// Interrupted.
 FilmMap make_film_map(const World& world, const FilmMapRequest& request, const Progress& progress = {});

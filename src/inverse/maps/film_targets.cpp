@@ -1,5 +1,6 @@
 #include "inverse/maps/film_targets.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -11,13 +12,15 @@ namespace trilens {
 namespace {
 
 constexpr double kStep = 0.01;  // film pixels to each side
+constexpr std::size_t kFewestPixels = 1024,
+                      kMostPixelsAtOnce = 1 << 18;  // shot between two looks at whether to stop
 
 std::uint64_t history_of(const ShotRays& shots, const ShotRay& shot) {
     std::uint64_t hash = (14695981039346656037ull ^ shot.object) * 1099511628211ull;  // FNV-1a
     for (const PathEvent& event : shots.events_of(shot))
         hash = (hash ^ (std::uint64_t{event.optic} << 2 | static_cast<std::uint64_t>(event.event))) *
                1099511628211ull;
-    return hash;
+    return std::max<std::uint64_t>(hash, 1);
 }
 
 /// Of two places of a picture that wraps around, the second nearer to the first.
@@ -25,8 +28,6 @@ Vec2 unwrapped(const Vec2& from, Vec2 to, double period) {
     if (period > 0) to.x -= period * std::round((to.x - from.x) / period);
     return to;
 }
-
-}  // namespace
 
 std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const Proxy& proxy) {
     const Ray last{shot.origin, shot.direction};
@@ -41,6 +42,18 @@ std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const P
     if (shot.state == ShotState::kSeen && shot.t < t * (1 - 1e-9)) return std::nullopt;  // something hides it
     return target.pixel_of_point(last.origin + t * last.direction, kNone);
 }
+
+/// The same where the ray came over the optics that are asked for, and to its end.
+std::optional<Vec2> asked_target_of(const ShotRays& shots, const ShotRay& shot,
+                                    const FilmTargetsParams& params, const Target& target,
+                                    const Proxy& proxy) {
+    if (!shot.followed() || (params.over_optics && shot.event_count == 0)) return std::nullopt;
+    if (params.optic && shot.event_count > 0 && shots.events_of(shot)[0].optic != *params.optic)
+        return std::nullopt;
+    return target_of(shot, target, proxy);
+}
+
+}  // namespace
 
 void find_film_targets(const World& world, const FilmTargetsParams& params, const Target& target,
                        const Proxy& proxy, std::span<const Vec2> places, std::span<MapImages> images) {
@@ -57,13 +70,8 @@ void find_film_targets(const World& world, const FilmTargetsParams& params, cons
     parallel_for(places.size(), 256, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
             std::array<std::optional<Vec2>, 5> found;
-            for (std::size_t k = 0; k < each; ++k) {
-                const ShotRay& shot = shots.rays[each * p + k];
-                if (!shot.followed() || (params.over_optics && shot.event_count == 0)) continue;
-                if (params.optic && shot.event_count > 0 && shots.events_of(shot)[0].optic != *params.optic)
-                    continue;
-                found[k] = target_of(shot, target, proxy);
-            }
+            for (std::size_t k = 0; k < each; ++k)
+                found[k] = asked_target_of(shots, shots.rays[each * p + k], params, target, proxy);
             if (!found[0]) continue;
             const ShotRay& shot = shots.rays[each * p];
             MapImage image{*found[0], Mat2(0), shot.weight, history_of(shots, shot)};
@@ -77,6 +85,35 @@ void find_film_targets(const World& world, const FilmTargetsParams& params, cons
             images[p].push_back(image);
         }
     });
+}
+
+ShownPixels find_shown_pixels(const World& world, const FilmTargetsParams& params, const Target& target,
+                              const Proxy& proxy, const Progress& progress) {
+    const auto width = static_cast<std::size_t>(world.scene.film.width);
+    const std::size_t pixels = width * static_cast<std::size_t>(world.scene.film.height);
+    ShownPixels shown{std::vector<float>(pixels, -1), std::vector<float>(pixels, -1),
+                      std::vector<std::uint64_t>(pixels, 0)};
+    Portions portions(kFewestPixels, kMostPixelsAtOnce);
+    std::vector<Vec2> places;
+    for (std::size_t from = 0; from < pixels; from += places.size()) {
+        progress.stop_if_cancelled();
+        places.resize(portions.next(pixels - from));
+        for (std::size_t p = 0; p < places.size(); ++p)
+            places[p] = {double((from + p) % width) + 0.5, double((from + p) / width) + 0.5};
+        const ShotRays shots = shoot_places(world, params.shoot, places);
+        parallel_for(places.size(), 1024, [&](std::size_t first, std::size_t last) {
+            for (std::size_t p = first; p < last; ++p) {
+                const ShotRay& shot = shots.rays[p];
+                const std::optional<Vec2> place = asked_target_of(shots, shot, params, target, proxy);
+                if (!place) continue;
+                shown.x[from + p] = static_cast<float>(place->x);
+                shown.y[from + p] = static_cast<float>(place->y);
+                shown.history[from + p] = history_of(shots, shot);
+            }
+        });
+        progress(double(from + places.size()) / double(pixels));
+    }
+    return shown;
 }
 
 }  // namespace trilens

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "base/util/error.h"
 #include "inverse/maps/proxy.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/maps/target.h"
@@ -25,7 +28,15 @@ struct FilmTargetsParams {
 void find_film_targets(const World& world, const FilmTargetsParams& params, const Target& target,
                        const Proxy& proxy, std::span<const Vec2> places, std::span<MapImages> images);
 
-/// The same without derivatives: position and history alone. `shot`: its last ray and end.
-std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const Proxy& proxy);
+/// What every pixel of a film shows of a target in its middle, rows from the top: the place, in the target's
+/// pixels (-1 where there is none), and a number of the path and the object, 0 where there is none.
+struct ShownPixels {
+    std::vector<float> x, y;
+    std::vector<std::uint64_t> history;
+};
+
+/// One ray for each pixel: params.with_jacobians is not asked. Throws Interrupted once it is cancelled.
+ShownPixels find_shown_pixels(const World& world, const FilmTargetsParams& params, const Target& target,
+                              const Proxy& proxy, const Progress& progress = {});
 
 }  // namespace trilens

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMiddleShare = 0.5;     // of the tolerance: where the map bends most, others are off by more
 constexpr std::size_t kBatch = 1 << 16;  // places evaluated between two looks at the progress
+constexpr double kRounding = 1e-7;       // of a position that is known as floats
 
 /// Coefficients of 1, t, t^2, t^3.
 struct Cubic {
@@ -115,7 +116,8 @@ struct SampledMap::Patch {
     }
 };
 
-SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress)
+SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress,
+                       const KnownPixels& known)
     : lattice_(lattice) {
     const int width = lattice.width, height = lattice.height, step = std::max(1, lattice.cell);
     at_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kNone);
@@ -132,10 +134,11 @@ SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, c
             std::vector<Cell> some(
                 cells.begin() + static_cast<std::ptrdiff_t>(from),
                 cells.begin() + static_cast<std::ptrdiff_t>(std::min(from + kBatch, cells.size())));
-            evaluate_level(some, evaluate);
+            evaluate_level(some, evaluate, known.empty());
             std::vector<double> error(some.size());
             parallel_for(some.size(), 256, [&](std::size_t first, std::size_t last) {
-                for (std::size_t i = first; i < last; ++i) error[i] = error_at_middle(some[i]);
+                for (std::size_t i = first; i < last; ++i)
+                    error[i] = known.empty() ? error_at_middle(some[i]) : error_of_pixels(some[i], known);
             });
             for (std::size_t i = 0; i < some.size(); ++i) {
                 const Cell& cell = some[i];
@@ -160,10 +163,10 @@ SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, c
     at_ = {};
 }
 
-void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate) {
+void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate, bool with_middles) {
     std::vector<Vec2> places;
     const auto ask = [&](int x, int y) {
-        Id& sample = sample_at(x, y);
+        Id& sample = at_[pixel_at(x, y)];
         if (sample != kNone) return sample;
         sample = static_cast<Id>(images_.size() + places.size());
         places.emplace_back(x + 0.5, y + 0.5);
@@ -172,7 +175,7 @@ void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& eva
     for (Cell& cell : cells) {
         cell.sample = {ask(cell.x0, cell.y0), ask(cell.x1, cell.y0), ask(cell.x0, cell.y1),
                        ask(cell.x1, cell.y1)};
-        if (!is_exact(cell)) ask((cell.x0 + cell.x1) / 2, (cell.y0 + cell.y1) / 2);
+        if (with_middles && !is_exact(cell)) ask((cell.x0 + cell.x1) / 2, (cell.y0 + cell.y1) / 2);
     }
     const std::size_t before = images_.size();
     images_.resize(before + places.size());
@@ -185,9 +188,7 @@ double SampledMap::error_at_middle(const Cell& cell) const {
     const std::optional<Patch> patch = Patch::of(*this, cell);
     if (!patch) return kNot;
     const int mx = (cell.x0 + cell.x1) / 2, my = (cell.y0 + cell.y1) / 2;
-    const MapImages& middle =
-        images_[at_[static_cast<std::size_t>(my) * static_cast<std::size_t>(lattice_.width) +
-                    static_cast<std::size_t>(mx)]];
+    const MapImages& middle = images_[at_[pixel_at(mx, my)]];
     if (middle.size() != patch->count()) return kNot;
     double worst = 0;
     for (std::size_t i = 0; i < patch->count(); ++i) {
@@ -198,6 +199,29 @@ double SampledMap::error_at_middle(const Cell& cell) const {
             if (exact.history == predicted.history)
                 nearest = std::min(nearest, length(exact.position - predicted.position));
         worst = std::max(worst, nearest);
+    }
+    return worst;
+}
+
+/// Of a cell all of whose pixels have the same history, at the worst of them.
+double SampledMap::error_of_pixels(const Cell& cell, const KnownPixels& known) const {
+    if (is_exact(cell)) return 0;
+    constexpr double kNot = std::numeric_limits<double>::infinity();
+    const std::uint64_t history = known.history[pixel_at(cell.x0, cell.y0)];
+    for (int y = cell.y0; y <= cell.y1; ++y)
+        for (int x = cell.x0; x <= cell.x1; ++x)
+            if (known.history[pixel_at(x, y)] != history) return kNot;
+    if (history == 0) return 0;
+    const std::optional<Patch> patch = Patch::of(*this, cell);
+    if (!patch) return kNot;
+    double worst = 0;
+    for (int y = cell.y0; y <= cell.y1; ++y) {
+        const PatchRow row = patch->row(0, (y - cell.y0) / patch->size.y);
+        for (int x = cell.x0; x <= cell.x1; ++x) {
+            const Vec2 exact(known.x[pixel_at(x, y)], known.y[pixel_at(x, y)]);
+            const Vec2 predicted = row.at((x - cell.x0) / patch->size.x).position;
+            worst = std::max(worst, length(predicted - exact) - kRounding * length(exact));
+        }
     }
     return worst;
 }

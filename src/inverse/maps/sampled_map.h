@@ -36,18 +36,31 @@ struct MapLattice {
     double tolerance = 0.01;  // that the positions of a patch may be off, in their own unit
 };
 
+/// What a map of one value at most is in the middle of every pixel, rows from the top, where that was asked
+/// beforehand: histories, 0 where it has no value, and positions. The lattice then gives the derivatives.
+struct KnownPixels {
+    std::span<const float> x, y;
+    std::span<const std::uint64_t> history;
+
+    bool empty() const { return history.empty(); }
+};
+
 /// A map known at every pixel centre of a lattice: exactly, or between exact ones to the tolerance (as found
 /// at the middle of each patch, to half of it; the error of a patch falls with the fourth power of its size).
-/// What is smaller than a cell and shows at none of its corners nor in its middle is missed.
+/// What is smaller than a cell and shows at none of its corners nor in its middle is missed, unless all
+/// pixels are known beforehand: a patch then has the histories of all its pixels, and is within half of the
+/// tolerance (or as near as floats can tell) at each.
 class SampledMap {
   public:
-    /// Throws Interrupted once `progress` says so, and what `evaluate` throws.
-    SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress = {});
+    /// Throws Interrupted once `progress` says so, and what `evaluate` throws. `known`: must outlive the
+    /// call only.
+    SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress = {},
+               const KnownPixels& known = {});
 
     int width() const { return lattice_.width; }
     int height() const { return lattice_.height; }
     std::size_t exact_count() const { return images_.size(); }  // places that were evaluated
-    double worst_accepted() const { return worst_; }            // at the middle of a patch
+    double worst_accepted() const { return worst_; }            // where patches were held against the map
 
     /// Calls use(x, y, images) once for every pixel, from several threads; the images in the order of the
     /// patch's first corner. The span is valid during the call only.
@@ -69,12 +82,13 @@ class SampledMap {
     struct Patch;
 
     bool is_exact(const Cell& cell) const { return cell.x1 - cell.x0 <= 1 && cell.y1 - cell.y0 <= 1; }
-    Id& sample_at(int x, int y) {
-        return at_[static_cast<std::size_t>(y) * static_cast<std::size_t>(lattice_.width) +
-                   static_cast<std::size_t>(x)];
+    std::size_t pixel_at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(lattice_.width) +
+               static_cast<std::size_t>(x);
     }
-    void evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate);
+    void evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate, bool with_middles);
     double error_at_middle(const Cell& cell) const;
+    double error_of_pixels(const Cell& cell, const KnownPixels& known) const;
 
     MapLattice lattice_;
     std::vector<MapImages> images_;

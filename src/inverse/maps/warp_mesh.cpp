@@ -157,7 +157,8 @@ WarpMesh nodes_of(MeshMaker& maker, int columns, int rows) {
         mesh.nodes.push_back(node);
     }
     if (spreads.empty())
-        throw InputError(scene_title(maker.world.scene), "", "the film shows nothing of the target");
+        throw InputError(scene_title(maker.world.scene), "",
+                         "no node of the mesh shows anything of the target");
     const auto p95 = spreads.begin() + static_cast<std::ptrdiff_t>(0.95 * double(spreads.size() - 1));
     std::nth_element(spreads.begin(), p95, spreads.end());
     for (WarpNode& node : mesh.nodes)
