@@ -270,10 +270,13 @@ std::vector<ConicArc> edge_arcs_inside(const Coplanarity& facet, const SceneTria
             next = i + 1;
             if (!is_inside(i)) continue;
             while (next + 1 < cuts.size() && is_inside(next)) ++next;
-            if (cuts[i].border < 0 && cuts[next].border < 0)
+            if (cuts[i].border < 0 && cuts[next].border < 0) {
                 inside.push_back(arc);
-            else
-                image.append(end_at(cuts[i]), end_at(cuts[next]), 0, inside);
+                continue;
+            }
+            // An arc that meets the facet in one point only has no part in it.
+            const ArcEnd from = end_at(cuts[i]), to = end_at(cuts[next]);
+            if (length(to.weights - from.weights) > kTouching) image.append(from, to, 0, inside);
         }
     }
     return inside;

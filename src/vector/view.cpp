@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
-#include <numbers>
-#include <numeric>
 #include <optional>
-#include <tuple>
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
@@ -22,6 +18,7 @@ constexpr double kStep = 0.4;      // pixels between tests along an arc
 constexpr int kMostSteps = 8000;   // on one arc; longer ones lie mostly off the film
 constexpr double kBefore = 1e-3;   // a surface nearer than the edge by this share of t hides it
 constexpr double kOutside = 1e-9;  // how far weights may leave [0, 1] on the facet's border
+constexpr double kAlongBorder = 1e-10;  // a weight that an arc on the facet's border has all along
 constexpr double kShortest =
     1.0;  // pixels: visible pieces and hidden gaps below this are rounding of the test
 
@@ -32,8 +29,9 @@ enum class Sight : char { kHidden, kBeside, kSeen };
 /// One facet at work.
 class FacetPen {
   public:
-    FacetPen(const VectorView& view, Id facet, std::vector<Id> ring)
+    FacetPen(const VectorView& view, const FacetSamples& owned, Id facet, std::vector<Id> ring)
         : view_(view),
+          owned_(owned),
           facet_(facet),
           ring_(std::move(ring)),
           rays_(trilinear_facet(view.mesh, facet)),
@@ -42,9 +40,9 @@ class FacetPen {
             screen_[k] = view.mesh.screen[view.mesh.facets[facet][static_cast<std::size_t>(k)]];
     }
 
-    /// Edges whose images this facet may show, ascending.
-    std::vector<Id> candidates(std::span<const Id> samples) const;
-    void draw(const DrawnEdge& edge, std::vector<EdgeCurve>& curves) const;
+    void draw(std::vector<EdgeCurve>& curves) const {
+        for (const Id e : candidates(owned_.of(facet_))) draw_edge(e, curves);
+    }
 
   private:
     struct Edge {
@@ -56,12 +54,17 @@ class FacetPen {
         const IdTriple& c = view_.scene.triangles[index];
         return {{view_.scene.points[c[0]], view_.scene.points[c[1]], view_.scene.points[c[2]]}};
     }
+    /// Edges whose images a facet of these samples may show, ascending.
+    std::vector<Id> candidates(std::span<const Id> samples) const;
+    void draw_edge(Id index, std::vector<EdgeCurve>& curves) const;
+    bool is_left_to_neighbour(const ConicArc& arc, Id index) const;
     std::vector<Section> sides(const SceneTriangle& scene_triangle, std::size_t edge) const;
     void cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>& curves) const;
     Sight sight(const Edge& edge, const Vec3& weights) const;
     Sight among_samples(const Edge& edge, const Vec3& weights, const Vec2& at) const;
 
     const VectorView& view_;
+    const FacetSamples& owned_;
     Id facet_;
     std::vector<Id> ring_;
     TrilinearFacet rays_;
@@ -109,12 +112,34 @@ std::vector<Section> FacetPen::sides(const SceneTriangle& scene_triangle, std::s
     return sides;
 }
 
-void FacetPen::draw(const DrawnEdge& drawn, std::vector<EdgeCurve>& curves) const {
+/// Along a border the facet with the lower index draws, if it draws at all.
+bool FacetPen::is_left_to_neighbour(const ConicArc& arc, Id index) const {
+    const IdTriple& corners = view_.mesh.facets[facet_];
+    for (int k = 0; k < 3; ++k) {
+        const auto& [c0, c1, c2] = arc.control;
+        if (std::max({std::fabs(c0[k]), std::fabs(c1[k]), std::fabs(c2[k])}) > kAlongBorder) continue;
+        for (const Id f : ring_) {
+            const IdTriple& others = view_.mesh.facets[f];
+            const auto has = [&](int corner) {
+                const Id wanted = corners[static_cast<std::size_t>(corner % 3)];
+                return std::find(others.begin(), others.end(), wanted) != others.end();
+            };
+            if (f >= facet_ || !has(k + 1) || !has(k + 2) || !view_.mesh.has_rays(f)) continue;
+            const std::vector<Id> drawn = candidates(owned_.of(f));
+            if (!owned_.of(f).empty() && std::binary_search(drawn.begin(), drawn.end(), index)) return true;
+        }
+    }
+    return false;
+}
+
+void FacetPen::draw_edge(Id index, std::vector<EdgeCurve>& curves) const {
+    const DrawnEdge& drawn = view_.edges.edge[index];
     const SceneTriangle scene_triangle = triangle(drawn.triangle);
     if (!may_image(rays_, scene_triangle)) return;
     const Edge edge{drawn, scene_triangle.from(drawn.edge), scene_triangle.to(drawn.edge)};
     for (const Section& side : sides(scene_triangle, drawn.edge))
-        for (const ConicArc& arc : edge_arcs_inside(cubic_, scene_triangle, side)) cut(edge, arc, curves);
+        for (const ConicArc& arc : edge_arcs_inside(cubic_, scene_triangle, side))
+            if (!is_left_to_neighbour(arc, index)) cut(edge, arc, curves);
 }
 
 /// Appends the arc's shown pieces; a piece that begins where the last curve ended continues it.
@@ -262,110 +287,13 @@ std::vector<EdgeCurve> edge_curves(const VectorView& view) {
     parallel_for(view.mesh.facets.size(), 4, [&](std::size_t from, std::size_t to) {
         for (std::size_t f = from; f < to; ++f) {
             if (!view.mesh.has_rays(f) || owned.of(f).empty()) continue;
-            const FacetPen pen(view, static_cast<Id>(f), around.ring(view.mesh.facets[f]));
-            for (const Id e : pen.candidates(owned.of(f))) pen.draw(view.edges.edge[e], of_facet[f]);
+            FacetPen(view, owned, static_cast<Id>(f), around.ring(view.mesh.facets[f])).draw(of_facet[f]);
         }
     });
     std::vector<EdgeCurve> curves;
     for (std::vector<EdgeCurve>& some : of_facet)
         for (EdgeCurve& curve : some) curves.push_back(std::move(curve));
     return curves;
-}
-
-namespace {
-
-/// Two triangles of one flat face: their unit normals differ by rounding alone.
-constexpr double kFlat = 1e-9;
-
-/// One id per object and place.
-std::vector<std::array<Id, 3>> weld(const TriangleScene& scene, std::size_t& count) {
-    std::map<std::tuple<Id, double, double, double>, Id> places;
-    std::vector<std::array<Id, 3>> vertices(scene.size());
-    for (std::size_t f = 0; f < scene.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3& p = scene.points[scene.triangles[f][k]];
-            const auto key = std::make_tuple(scene.object[f], p.x + 0.0, p.y + 0.0, p.z + 0.0);
-            vertices[f][k] = places.try_emplace(key, static_cast<Id>(places.size())).first->second;
-        }
-    count = places.size();
-    return vertices;
-}
-
-/// One triangle's use of an edge, sorted so that the users of an edge stand together.
-struct Use {
-    Id low, high, triangle, edge;
-    bool forward;  // the edge runs from low to high
-    auto key() const { return std::make_tuple(low, high, triangle, edge); }
-};
-
-std::vector<Use> sorted_uses(const std::vector<std::array<Id, 3>>& vertices) {
-    std::vector<Use> uses;
-    for (Id f = 0; f < vertices.size(); ++f)
-        for (Id e = 0; e < 3; ++e) {
-            const Id a = vertices[f][e], b = vertices[f][(e + 1) % 3];
-            if (a != b) uses.push_back({std::min(a, b), std::max(a, b), f, e, a < b});
-        }
-    std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.key() < b.key(); });
-    return uses;
-}
-
-/// The edge between two triangles; false where it is never drawn.
-bool describe_pair(const DrawnEdges& edges, const EdgeRules& rules, DrawnEdge& edge) {
-    const Vec3 n = normalize_or_zero(edges.normal[edge.triangle]),
-               m = normalize_or_zero(edges.normal[edge.other]);
-    const double cosine = dot(n, m) * (edge.same_winding ? 1.0 : -1.0);
-    const bool materials = rules.material[edge.triangle] != rules.material[edge.other];
-    const bool creased =
-        edge.triangle < rules.without_creases && cosine < std::cos(kCreaseAngle * std::numbers::pi / 180);
-    edge.always = materials || creased;
-    return edge.always || length(n - m * (edge.same_winding ? 1.0 : -1.0)) > kFlat;
-}
-
-void index_by_vertex(DrawnEdges& edges, std::size_t vertex_count) {
-    edges.first_of.assign(vertex_count + 1, 0);
-    const auto each_end = [&](auto body) {
-        for (Id i = 0; i < edges.edge.size(); ++i) {
-            const DrawnEdge& e = edges.edge[i];
-            body(edges.vertex_of[e.triangle][e.edge], i);
-            body(edges.vertex_of[e.triangle][(e.edge + 1) % 3], i);
-        }
-    };
-    each_end([&](Id vertex, Id) { ++edges.first_of[vertex + 1]; });
-    std::partial_sum(edges.first_of.begin(), edges.first_of.end(), edges.first_of.begin());
-    std::vector<std::size_t> next(edges.first_of.begin(), edges.first_of.end() - 1);
-    edges.of_vertex.resize(edges.first_of.back());
-    each_end([&](Id vertex, Id i) { edges.of_vertex[next[vertex]++] = i; });
-}
-
-}  // namespace
-
-DrawnEdges drawn_edges(const TriangleScene& scene, const EdgeRules& rules) {
-    DrawnEdges edges;
-    std::size_t vertex_count = 0;
-    edges.vertex_of = weld(scene, vertex_count);
-    for (const IdTriple& c : scene.triangles)
-        edges.normal.push_back(
-            cross(scene.points[c[1]] - scene.points[c[0]], scene.points[c[2]] - scene.points[c[0]]));
-    const std::vector<Use> uses = sorted_uses(edges.vertex_of);
-    for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
-        while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) ++end;
-        DrawnEdge edge{uses[i].triangle, uses[i].edge, kNone, true, true};
-        if (end - i == 2) {
-            edge.other = uses[i + 1].triangle;
-            edge.same_winding = uses[i].forward != uses[i + 1].forward;
-            if (!describe_pair(edges, rules, edge)) continue;
-        }
-        edges.edge.push_back(edge);
-    }
-    index_by_vertex(edges, vertex_count);
-    return edges;
-}
-
-bool is_silhouette(const DrawnEdges& edges, const DrawnEdge& edge, const Vec3& direction) {
-    if (edge.other == kNone) return false;
-    const double here = dot(edges.normal[edge.triangle], direction);
-    const double there = dot(edges.normal[edge.other], direction) * (edge.same_winding ? 1 : -1);
-    return (here > 0) != (there > 0);
 }
 
 }  // namespace trilens

@@ -153,6 +153,29 @@ double distance_to_lines(const Vec2& p, const std::vector<EdgeLine>& lines) {
     return nearest;
 }
 
+/// A card behind the eye whose image in a square mirror has two sides on the borders of any even number of
+/// facets: along the rows, the columns and, for any number, the diagonal.
+Scene on_facet_borders(int resolution) {
+    Scene scene;
+    scene.film = {96, 72, 1};
+    CameraDescription camera;
+    camera.name = "main", camera.kind = PerspectiveCamera{.yfov = 40};
+    camera.eye = {0, 0, kEyeHeight}, camera.at = Vec3(0);
+    scene.cameras = {camera};
+    Material plain, chrome;
+    plain.unlit = true, chrome.metallic_factor = 1;
+    scene.materials = {plain, chrome};
+    Mesh card, mirror;
+    card.name = "card", mirror.name = "mirror";
+    card.object.points = {{0, 0, 6}, {2, 0, 6}, {2, 2, 6}, {0, 2, 6}, {-1, -1, 6}, {-1, -2, 6}};
+    append_quads({{0, 1, 2, 3}}, card.object);
+    card.object.triangles.push_back({0, 4, 5}), card.object.material.push_back(0);
+    mirror.role = Role::kOptic, mirror.material = 1, mirror.resolution = resolution;
+    mirror.primitive = Primitive{.axis = {0, 0, 1}, .kind = PlanePrimitive{.size = {3.2, 3.2}}};
+    scene.meshes = {card, mirror};
+    return scene;
+}
+
 double length_of(const std::vector<EdgeLine>& lines) {
     double sum = 0;
     for (const EdgeLine& line : lines)
@@ -206,4 +229,20 @@ TEST_CASE("the length of a drawing's lines changes no more than the scene does",
                     CHECK(std::fabs(whole - straight) <= 2 + 1000 * tilt);
                 }
             }
+}
+
+TEST_CASE("an edge along the border of facets is drawn once", "[laws][vector][law]") {
+    for (const bool wire : {false, true}) {
+        double one = 0;
+        for (int resolution = 1; resolution <= 8; ++resolution) {
+            const std::vector<EdgeLine> lines =
+                Renderer(on_facet_borders(resolution)).draw_lines({}, {.wire = wire}).edge_lines;
+            const double whole = length_of(lines);
+            if (resolution == 1) one = whole;
+            INFO(resolution << (wire ? ", wire: " : ": ") << whole << " px, one pair of facets " << one);
+            REQUIRE(whole > 200);
+            CHECK(std::fabs(whole - one) <= 0.5);
+            for (const EdgeLine& line : lines) CHECK(length_of({line}) > 0);
+        }
+    }
 }
