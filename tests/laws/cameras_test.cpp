@@ -167,8 +167,8 @@ TEST_CASE("every example is drawn by projection as its facets' rays have it, thr
     CHECK(drawn >= 20);
 }
 
-TEST_CASE("the examples of cameras are the shipped scenes", "[laws][law][golden]") {
-    for (const auto& [name, file] : {std::pair("cameras", "cameras.json"), {"caustic", "cameras/cup.json"}})
+TEST_CASE("the examples of cameras and caustics are the shipped scenes", "[laws][law][golden]") {
+    for (const auto& [name, file] : {std::pair("cameras", "cameras.json"), {"caustic", "caustics/ring.json"}})
         for (const SceneExample& example : scene_examples())
             if (example.name == std::string(name))
                 CHECK(example.json == trilens_test::bytes_of(source_dir() + "/scenes/" + file));

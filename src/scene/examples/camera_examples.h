@@ -1,4 +1,4 @@
-// Example scenes of cameras: their texts.
+// Example scenes that are files of scenes/, too: their texts.
 #pragma once
 
 namespace trilens {

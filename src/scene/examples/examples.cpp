@@ -324,7 +324,7 @@ const SceneExample kExamples[] = {
     {"crystal-ball", "light into glass and out of it again, and what is behind upside down", kCrystalBall},
     {"cameras", "a mirror ball in a room, seen by fifteen cameras: fisheye, panorama, strip, slits and others",
      kCamerasExample},
-    {"caustic", "string art: threads along the rays in a mirrored ring draw their caustic, a nephroid",
+    {"caustic", "the sun in a mirrored ring on a table draws a nephroid, as in a cup of coffee",
      kCausticExample},
 };
 
