@@ -287,10 +287,8 @@ void bind_scene(py::module_& module) {
                 if (frames < 0 || frames > kMostFrames || (frames > 0 && std::fabs(frame) > kMostFrames))
                     throw UsageError("a turntable has 1 to " + std::to_string(kMostFrames) +
                                      " frames, or 0: none");
-                const std::vector<SceneOverride> turned =
-                    frames > 0 ? turntable(scene, find_camera(scene, camera), static_cast<int>(frame), frames)
-                               : std::vector<SceneOverride>();
-                return scene_at_frame(scene, frame, turned);
+                return frames > 0 ? scene_on_turntable(scene, frame, find_camera(scene, camera), frames)
+                                  : scene_at_frame(scene, frame);
             },
             py::arg("frame"), py::kw_only(), py::arg("turntable") = 0, py::arg("camera") = "",
             "The scene at a frame of its animation, as a new one without animation. Values are held before "

@@ -52,9 +52,8 @@ class FrameSequence {
 
     Scene scene_of(const Scene& scene, int frame) const {
         const int turn = options_.frames.turntable;
-        return scene_at_frame(
-            scene, frame,
-            turn > 0 ? turntable(scene, request_.frame.camera, frame, turn) : std::vector<SceneOverride>());
+        return turn > 0 ? scene_on_turntable(scene, frame, request_.frame.camera, turn)
+                        : scene_at_frame(scene, frame);
     }
 
     Picture write_frame(const std::string& output, const std::string& job) {

@@ -84,6 +84,13 @@ Scene scene_at_frame(const Scene& scene, double frame, std::span<const SceneOver
     return load_frame(scene, frame, changes, texture_reader());
 }
 
+Scene scene_on_turntable(const Scene& scene, double frame, std::size_t camera, int frames) {
+    const bool moves = find_animation(scene).has_value();
+    const std::vector<SceneOverride> turned =
+        turntable(moves ? scene_at_frame(scene, frame) : scene, camera, static_cast<int>(frame), frames);
+    return scene_at_frame(scene, frame, turned);
+}
+
 std::size_t find_camera(const Scene& scene, const std::string& name) {
     if (name.empty()) return scene.own_camera;
     std::vector<std::string> names;

@@ -41,4 +41,8 @@ std::size_t find_camera(const Scene& scene, const std::string& name);
 /// The scene as it is at a frame: see load_frame.
 Scene scene_at_frame(const Scene& scene, double frame, std::span<const SceneOverride> changes = {});
 
+/// The same with the camera on a turntable of `frames` frames, which turns it from where the frame has it:
+/// see turntable.
+Scene scene_on_turntable(const Scene& scene, double frame, std::size_t camera, int frames);
+
 }  // namespace trilens

@@ -59,10 +59,12 @@ Shard shard_of(const std::string& text) {
 /// both have moved.
 std::string name_from(const std::string& folder, const std::string& file) {
     namespace fs = std::filesystem;
-    std::error_code unreadable;
-    return fs::weakly_canonical(file, unreadable)
-        .lexically_proximate(fs::weakly_canonical(folder, unreadable))
-        .generic_string();
+    // Absolute first: what is relative and not there yet would stay relative.
+    const auto place = [](const std::string& name) {
+        std::error_code unreadable;
+        return fs::weakly_canonical(fs::absolute(name), unreadable);
+    };
+    return place(file).lexically_proximate(place(folder)).generic_string();
 }
 
 /// What tells the scene from others of the folder: its file and what is changed in it. One in memory by its

@@ -261,3 +261,21 @@ TEST_CASE("the samples that a sweep's runs had stand in runs.csv, also where a p
     REQUIRE(run_trilens("sweep run " + scene + " --size 24x18 --over /film/spp=1,3 -o " + out).exit_code == 0);
     CHECK(column(out, "spp") == std::vector<double>{1, 3});
 }
+
+TEST_CASE("a sweep goes on in a folder that it made itself, by whatever name, when its scene has changed",
+          "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_edited");
+    const fs::path home = fs::current_path();
+    fs::current_path(folder);
+    write_file(folder, "scene.json", small_scene());
+    const CommandRun first = run_trilens("sweep run scene.json --over resolution=1,2 -o out");
+    write_file(folder, "scene.json", replaced(small_scene(), "\"width\": ", "\"width\": 1"));
+    const CommandRun again = run_trilens("sweep run scene.json --over resolution=1,2 -o out");
+    const CommandRun named =
+        run_trilens("sweep run '" + folder + "/scene.json' --over resolution=1,2 -o '" + folder + "/out'");
+    fs::current_path(home);
+    for (const CommandRun& run : {first, again, named}) {
+        INFO(run.err);
+        CHECK(run.exit_code == 0);
+    }
+}

@@ -179,6 +179,23 @@ TEST_CASE("a turntable goes once around what the camera looks at", "[laws][law]"
     CHECK(scene_at_frame(scene, 0, turntable(scene, 0, 0, 8)).cameras[0].eye == eye);
 }
 
+TEST_CASE("a turntable turns a camera that moves from where the frame has it", "[laws][law]") {
+    const Scene scene = parse_scene(
+        scene_text({}, track("/cameras/0/lookAt/eye", key(0, "[0,1,8]") + "," + key(8, "[0,1,12]"))));
+    for (int frame = 0; frame < 8; ++frame) {
+        const CameraDescription still = scene_at_frame(scene, frame).cameras[0],
+                                turned = scene_on_turntable(scene, frame, 0, 8).cameras[0];
+        // About the vertical.
+        const auto flat = [&](const Vec3& eye) {
+            return Vec3(eye.x, 0, eye.z) - Vec3(still.at.x, 0, still.at.z);
+        };
+        CHECK(turned.eye.y == Approx(still.eye.y));
+        CHECK(length(flat(turned.eye)) == Approx(length(flat(still.eye))));
+        CHECK(dot(normalize(flat(turned.eye)), normalize(flat(still.eye))) ==
+              Approx(std::cos(2 * 3.14159265358979323846 * frame / 8)).margin(1e-12));
+    }
+}
+
 TEST_CASE("animations that are none are refused with their place", "[laws][bad-input][law]") {
     const auto refused = [](const std::string& tracks) -> std::string {
         try {

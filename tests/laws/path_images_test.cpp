@@ -188,3 +188,30 @@ TEST_CASE("the magnification that facets have in closed form is that of the exac
     CHECK(error[compared / 2] < 0.02);
     CHECK(error[compared * 9 / 10] < 0.1);
 }
+
+TEST_CASE("an explained pixel's paths weigh what shot rays of their words do", "[laws][law]") {
+    const Renderer renderer(
+        load_scene(SceneRequest{source_dir() + "/scenes/paths/glass-before-mirror.json", {}, 0}));
+    const Film& film = renderer.scene().film;
+    PictureRequest truth;
+    truth.engine = Engine::kLimitTruth;
+    std::size_t compared = 0, tinted = 0;
+    for (int y = 20; y < film.height; y += 40)
+        for (int x = 20; x < film.width; x += 40)
+            for (const PixelEnd& end : renderer.explain(truth, x, y).ends) {
+                if (!end.principal) continue;
+                std::string word;
+                for (const Step& step : end.steps)
+                    if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
+                ShootRequest along;
+                along.path = EventWord(word);
+                const Vec2 middle(x + 0.5, y + 0.5);
+                const ShotRays shot = renderer.shoot(std::span(&middle, 1), along);
+                if (!shot.rays[0].followed()) continue;
+                for (int c = 0; c < 3; ++c) CHECK(std::fabs(end.weight[c] - shot.rays[0].weight[c]) <= 1e-9);
+                ++compared;
+                tinted += end.weight.x < 0.9;
+            }
+    CHECK(compared > 40);
+    CHECK(tinted > 20);
+}

@@ -155,6 +155,7 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
         for (const int n : kOddInts) {
             only_errors("turntable", [&] { turntable(scene, 0, n, n); });
             only_errors("turntable", [&] { turntable(scene, 99, 1, n); });
+            only_errors("scene_on_turntable", [&] { scene_on_turntable(scene, n, 0, n); });
             Scene changed = scene;
             only_errors("set_resolution", [&] { set_resolution(changed, n); });
         }

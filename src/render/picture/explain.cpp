@@ -24,8 +24,10 @@ void name_camera_facet(const World& world, std::size_t index, const SampleGrid& 
 }
 
 /// Of the optic that the sample shows first, and of the ends of the paths over it.
-void describe_optic(const Viewer& viewer, const SampleViews& shown, PixelExplanation& explained) {
+void describe_optic(const World& world, const Viewer& viewer, const SampleViews& shown,
+                    PixelExplanation& explained) {
     const SampleView& view = shown.samples.front();
+    const OpticWeights first = first_weights(world, shown, view);
     explained.optic = view.optic;
     explained.facet = view.facet;
     explained.traced = view.traced;
@@ -37,6 +39,11 @@ void describe_optic(const Viewer& viewer, const SampleViews& shown, PixelExplana
     for (const PathEnd& end : shown.ends_of(view)) {
         const std::span<const Step> steps = shown.steps_of(end);
         explained.ends.push_back({end, {steps.begin(), steps.end()}, std::nullopt});
+        Vec3& weight = explained.ends.back().weight;
+        weight *= through_volumes(shown, view) * (end.path == Path::kReflect ? first.reflect : first.refract);
+        if (end.medium != kNone && end.hit.seen())
+            weight *= volume_transmittance(world.scene.materials[world.optics[end.medium].material],
+                                           path_length(end));
         if (end.node == kNone || view.leaf == kNone || !viewer.has_facets()) continue;
         const PathNode& node = viewer.paths(view.optic).nodes[end.node];
         explained.ends.back().facet_kind = facet_kind(node.mesh, node.facet_of(view.leaf));
@@ -67,7 +74,7 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     explained.ray = view.ray;
     explained.hit = view.hit;
     explained.depth = view.depth;
-    if (view.optic != kNone) describe_optic(*viewer, shown, explained);
+    if (view.optic != kNone) describe_optic(world, *viewer, shown, explained);
     if (viewer->has_facets()) name_camera_facet(world, request.frame.camera, grid, explained);
     const RayDifferentials differentials(world, *viewer, grid);
     const SampleColour colour = sample_colour(world, shown, view, &differentials);

@@ -12,7 +12,8 @@ namespace trilens {
 
 struct World;
 
-/// One end of the pixel's paths over an optic.
+/// One end of the pixel's paths over an optic. Its weight is the share of the light from what it sees that
+/// comes to the camera, as a ShotRay's: all along the path, unlike a PathEnd's.
 struct PixelEnd : PathEnd {
     std::vector<Step> steps;  // the meetings with optics, the first among them
     std::optional<GeneralLinearKind>

@@ -161,6 +161,20 @@ LayerRequest checked_layers(const World& world, LayerRequest asked) {
     return asked;
 }
 
+/// Layers that are asked for and say nothing.
+void warn_of_layers(const LayerRequest& asked, Engine engine, const Warn& warn) {
+    const auto has = [&](const char* layer) {
+        return std::find(asked.layers.begin(), asked.layers.end(), layer) != asked.layers.end();
+    };
+    for (const char* layer : {"magnification", "ray"})
+        if (has(layer) && !has("reflect") && !has("refract"))
+            warn(fmt::format(
+                "layer {} stands beside reflect and refract: without either of them it is not written",
+                layer));
+    if (has("magnification") && engine == Engine::kLimitTruth)
+        warn("layer magnification is that of facets: exact surfaces have none, and it is 0 everywhere");
+}
+
 /// Refuses a film whose layers alone would fill the machine's memory: the system would end the program
 /// without a word.
 void check_film_fits(const World& world, const LayerRequest& window, bool in_strips) {
@@ -223,6 +237,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     const LayerRequest layers = checked_layers(world, request.layers);
     check_film_fits(world, layers, sink != nullptr);
     warn_of_roughness(world, request.frame, request.engine, warn);
+    if (warn) warn_of_layers(layers, request.engine.engine, warn);
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;

@@ -106,6 +106,10 @@ void check_track(const Node& root, const Node& track) {
     const Node keys = track["keys"], target = track["target"];
     const std::string pointer = target.json.get<std::string>();
     if (pointer.rfind("/animation", 0) == 0) target.fail("an animation cannot animate itself");
+    if (pointer.rfind("/lenses", 0) == 0)
+        target.fail(
+            "a lens has no keys: its bodies are meshes, which do (/meshes/NAME/transform; scene info names "
+            "them)");
     for (std::size_t k = 0; k < keys.size(); ++k) {
         const Node value = keys[k]["value"];
         if (is_rotation(pointer)) check_rotation(value);

@@ -33,7 +33,7 @@ const char* summary_schema() {
     "number": {"description": "what is not finite is a string; null was not computed", "oneOf": [{"type": "number"}, {"type": "null"}, {"enum": ["nan", "inf", "-inf"]}]},
     "metrics": {
       "type": "object", "additionalProperties": {"$ref": "#/definitions/number"},
-      "description": "by column name of runs.csv and displacement.csv: *_px in pixels, *_s in seconds of wall-clock time, *_mb in MiB, disp_coverage and machine_used_by_others as shares 0..1. t_surface_s: surfaces and trees of the scene, made once for all runs of a process; t_prepare_s: rays and what the engine needs; t_draw_s: drawing and shading; t_total_s: the picture, median of repeats drawings; t_spread_s: the longest minus the shortest of them; t_first_s: the drawing before them; t_write_s: writing image.exr; t_trace_s: tracing the truth; jobs: runs of this process at once"
+      "description": "by column name of runs.csv and displacement.csv: *_px in pixels, *_s in seconds of wall-clock time, *_mb in MiB, disp_coverage and machine_used_by_others as shares 0..1. Of a run disp_mean_px, disp_p95_px and disp_max_px are the larger of its layers', disp_coverage the smaller, and the counts those of both. t_surface_s: surfaces and trees of the scene, made once for all runs of a process; t_prepare_s: rays and what the engine needs; t_draw_s: drawing and shading; t_total_s: the picture, median of repeats drawings; t_spread_s: the longest minus the shortest of them; t_first_s: the drawing before them; t_write_s: writing image.exr; t_trace_s: tracing the truth; jobs: runs of this process at once"
     },
     "point": {"type": "object", "description": "value by axis", "additionalProperties": {"type": ["number", "string"]}},
     "axis": {
