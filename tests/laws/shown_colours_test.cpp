@@ -133,8 +133,7 @@ void check_colours(const World& world, const ShownCase& one) {
 
 /// What is known to be off, and why.
 ShownCase case_of(const std::string& name) {
-    // Outlines of facets are chords, and parts of facets are fitted one by one: with twice as many facets
-    // along each edge, or four times, none of these pixels is left.
+    // Outlines of facets are chords, and parts of facets are fitted one by one.
     if (name == "lenses/anamorphic") return {name, {}, 1, 0};
     if (name == "patches/nurbs") return {name, {}, 1, 1};
     // The mirror fills the film but for a pixel at its left and right edge: what the truth shows beside those
