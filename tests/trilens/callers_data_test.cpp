@@ -1,6 +1,5 @@
 // What callers hand to the public functions: errors come of it where it is no data, and nothing else does.
 #include "support/callers_data.h"
-
 #include <fstream>
 
 #include "study/sweep_subjects.h"
@@ -24,8 +23,7 @@ Scene callers_scene() {
 
 PictureRequest picture_of(const FrameParams& frame, const EngineChoice& engine = {}) {
     PictureRequest request;
-    request.frame = frame;
-    request.engine = engine;
+    request.frame = frame, request.engine = engine;
     return request;
 }
 
@@ -46,10 +44,9 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens][b
             fit_power_law(std::vector<FitPoint>{{x, 1}, {2, x}, {4, 1}, {8, 0.1}}, {x, true});
         });
         only_errors("student_t", [&] { student_t(3, x); });
+        const std::vector<std::vector<unsigned char>> pictures{{}, {1, 2}};
+        only_errors("encode_apng", [&] { encode_apng(pictures, x); });
         only_errors("encode_apng", [&] { encode_apng({}, x); });
-        only_errors("encode_apng", [&] {
-            encode_apng(std::vector<std::vector<unsigned char>>{{}, {1, 2}}, x);
-        });
     }
     CHECK(fixed_text(0.5, 1000).size() == 102);
     CHECK(rounded_text(0.1, 1000) == rounded_text(0.1, 17));
@@ -149,13 +146,14 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
         only_errors("find_animation", [&] { find_animation(scene); });
         only_errors("find_camera", [&] { find_camera(scene, ""), find_camera(scene, "nobody"); });
         only_errors("scene_title", [&] { scene_title(scene); });
-        for (const double frame : kOddNumbers)
-            only_errors("scene_at_frame", [&] { scene_at_frame(scene, frame); });
+        for (const double x : kOddNumbers) {
+            only_errors("scene_at_frame", [&] { scene_at_frame(scene, x); });
+            only_errors("scene_on_turntable", [&] { scene_on_turntable(scene, x, 0, 4); });
+        }
         only_errors("load_frame", [&] { load_frame(scene, 0, {}, {}); });
         for (const int n : kOddInts) {
             only_errors("turntable", [&] { turntable(scene, 0, n, n); });
             only_errors("turntable", [&] { turntable(scene, 99, 1, n); });
-            only_errors("scene_on_turntable", [&] { scene_on_turntable(scene, n, 0, n); });
             Scene changed = scene;
             only_errors("set_resolution", [&] { set_resolution(changed, n); });
         }
@@ -297,18 +295,9 @@ TEST_CASE("sweeps and suites refuse requests that are none", "[trilens][bad-inpu
             only_errors("point_text", [&] { point_text(point); });
             only_errors("find_coordinate", [&] { find_coordinate(point, text); });
         }
-        only_errors("load_point_scene", [&] {
-            PointRequest request;
-            request.scene.file = text;
-            request.optic = text;
-            load_point_scene(request);
-        });
-        only_errors("load_point_scene", [&] {
-            PointRequest request;
-            request.loaded = std::make_shared<const Scene>(callers_scene());
-            request.camera_facets = 8;
-            load_point_scene(request);
-        });
+        PointRequest of_optic;
+        of_optic.scene.file = of_optic.optic = text;
+        only_errors("load_point_scene", [&] { load_point_scene(of_optic); });
         only_errors("farm_script", [&] { farm_script({text, -1, text, text, {text}, {}}); });
         only_errors("truth_file", [&] { truth_file(text, text), run_folder(text, text); });
         only_errors("without_axis", [&] { without_axis({}, text); });
