@@ -7,6 +7,7 @@
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "inverse/maps/film_images.h"
+#include "inverse/maps/film_witness.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/unwrap/photo.h"
 #include "render/frame/frame.h"
@@ -265,9 +266,6 @@ Anamorph make_anamorph(const World& world, const AnamorphRequest& request, const
     const std::vector<unsigned char> shows =
         shows_paper(world, request, place, page.paper, cell_middles(made.window, 256, 256));
     made.coverage = double(std::count(shows.begin(), shows.end(), 1)) / double(shows.size());
-    if (made.coverage == 0)
-        throw InputError(scene_title(world.scene), world.scene.meshes[request.page].name,
-                         "is not seen in the window over a mirror: there is nothing to print");
 
     // Page dot -> world -> film.
     const Vec3 dx = place.rectangle.u / width, dy = -place.rectangle.v / height,
@@ -278,10 +276,22 @@ Anamorph make_anamorph(const World& world, const AnamorphRequest& request, const
         for (const Vec2& dot : dots) places.push_back(WorldPlace{top_left + dot.x * dx + dot.y * dy, dx, dy});
         find_film_images(world, params, places, images);
     };
-    const SampledMap map({page.width, page.height, 32, request.tolerance}, evaluate, progress);
+    const auto dot_of = [&](const ShotRay& shot) -> std::optional<Vec2> {
+        if (shot.state != ShotState::kSeen || shot.object != request.page) return std::nullopt;
+        const Vec2 mm = place.mm_of(shot.position) / Vec2(page.paper.width, page.paper.height);
+        return Vec2(mm.x * width, (1 - mm.y) * height);
+    };
+    const FilmWitness witness(world, {params, page.width, page.height, dot_of},
+                              progress.part(0, kShareOfWitness));
+    const SampledMap map({page.width, page.height, 32, request.tolerance}, evaluate,
+                         progress.part(kShareOfWitness, 1 - kShareOfWitness),
+                         {{}, witness.judge(request.tolerance)});
     made.exact_places = map.exact_count();
     made.worst_accepted = map.worst_accepted();
     paint_page(map, PagePainter(request, made.window, 25.4 / request.dpi), made);
+    if (made.coverage == 0 && made.extents == decltype(made.extents){})
+        throw InputError(scene_title(world.scene), world.scene.meshes[request.page].name,
+                         "is not seen in the window over a mirror: there is nothing to print");
     return made;
 }
 

@@ -7,6 +7,7 @@
 #include "base/util/parallel.h"
 #include "inverse/maps/film_images.h"
 #include "inverse/maps/film_targets.h"
+#include "inverse/maps/film_witness.h"
 #include "inverse/maps/sampled_map.h"
 #include "render/frame/frame.h"
 #include "render/world/world.h"
@@ -68,7 +69,14 @@ FilmMap MapMaker::unwrap() const {
     };
     const int wide = request.target.width, high = request.target.height;
     FilmMap map = empty_map(wide, high, world.scene.film.width, world.scene.film.height);
-    fill(SampledMap({wide, high, first_cell(params.visibility), request.tolerance}, evaluate, progress), map);
+    const FilmWitness witness(
+        world,
+        {params, wide, high, [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }},
+        progress.part(0, kShareOfWitness));
+    fill(SampledMap({wide, high, first_cell(params.visibility), request.tolerance}, evaluate,
+                    progress.part(kShareOfWitness, 1 - kShareOfWitness),
+                    {{}, witness.judge(request.tolerance)}),
+         map);
     if (map.valid_count() == 0)
         throw InputError(scene_title(world.scene), "",
                          "nothing of the target is seen on the film within an optic");
@@ -99,7 +107,7 @@ FilmMap MapMaker::view() const {
     const Film& film = world.scene.film;
     FilmMap map = empty_map(film.width, film.height, request.target.width, request.target.height);
     fill(SampledMap({map.width, map.height, first_cell(false), request.tolerance}, evaluate, rest,
-                    {shown.x, shown.y, shown.history}),
+                    {{shown.x, shown.y, shown.history}}),
          map);
     map.x = std::move(shown.x);
     map.y = std::move(shown.y);

@@ -29,6 +29,8 @@ Vec2 unwrapped(const Vec2& from, Vec2 to, double period) {
     return to;
 }
 
+}  // namespace
+
 std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const Proxy& proxy) {
     const Ray last{shot.origin, shot.direction};
     if (target.has_directions()) return target.pixel_of_direction(proxy.direction_met(last));
@@ -42,6 +44,8 @@ std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const P
     if (shot.state == ShotState::kSeen && shot.t < t * (1 - 1e-9)) return std::nullopt;  // something hides it
     return target.pixel_of_point(last.origin + t * last.direction, kNone);
 }
+
+namespace {
 
 /// The same where the ray came over the optics that are asked for, and to its end.
 std::optional<Vec2> asked_target_of(const ShotRays& shots, const ShotRay& shot,

@@ -39,4 +39,8 @@ struct ShownPixels {
 ShownPixels find_shown_pixels(const World& world, const FilmTargetsParams& params, const Target& target,
                               const Proxy& proxy, const Progress& progress = {});
 
+/// The place of the target that a ray's end shows, without derivatives, whatever its path. `shot`: followed
+/// to its end.
+std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const Proxy& proxy);
+
 }  // namespace trilens

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
@@ -114,10 +115,25 @@ struct SampledMap::Patch {
         row.history = c[0]->history;
         return row;
     }
+
+    /// How far the images at u and v, in 0..1, are off these; infinity where they are not the same.
+    double error_at(const Vec2& uv, const MapImages& exact) const {
+        double worst = 0;
+        if (exact.size() != count()) return std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < count(); ++i) {
+            const MapImage predicted = row(i, uv.y).at(uv.x);
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const MapImage& one : exact)
+                if (one.history == predicted.history)
+                    nearest = std::min(nearest, length(one.position - predicted.position));
+            worst = std::max(worst, nearest);
+        }
+        return worst;
+    }
 };
 
 SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress,
-                       const KnownPixels& known)
+                       const MapChecks& checks)
     : lattice_(lattice) {
     const int width = lattice.width, height = lattice.height, step = std::max(1, lattice.cell);
     at_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kNone);
@@ -126,41 +142,93 @@ SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, c
         for (int x = 0; x == 0 || x < width - 1; x += step)
             cells.push_back({x, y, std::min(x + step, width - 1), std::min(y + step, height - 1)});
 
-    // Level by level: all corners and middles of a level are evaluated together.
-    double settled_pixels = 0;
+    fresh_.assign(block_count(), 0);
+    while (!cells.empty()) {
+        settle(std::move(cells), evaluate, checks, progress);
+        cells = checks.known.empty() ? take_contradicted() : std::vector<Cell>();
+    }
+    at_ = {};
+    fresh_ = {};
+}
+
+/// Level by level: all corners and middles of a level are evaluated together.
+void SampledMap::settle(std::vector<Cell> cells, const EvaluateMap& evaluate, const MapChecks& checks,
+                        const Progress& progress) {
     while (!cells.empty()) {
         std::vector<Cell> finer;
         for (std::size_t from = 0; from < cells.size(); from += kBatch) {
             std::vector<Cell> some(
                 cells.begin() + static_cast<std::ptrdiff_t>(from),
                 cells.begin() + static_cast<std::ptrdiff_t>(std::min(from + kBatch, cells.size())));
-            evaluate_level(some, evaluate, known.empty());
+            evaluate_level(some, evaluate, checks.known.empty());
             std::vector<double> error(some.size());
             parallel_for(some.size(), 256, [&](std::size_t first, std::size_t last) {
-                for (std::size_t i = first; i < last; ++i)
-                    error[i] = known.empty() ? error_at_middle(some[i]) : error_of_pixels(some[i], known);
+                for (std::size_t i = first; i < last; ++i) error[i] = error_of(some[i], checks);
             });
             for (std::size_t i = 0; i < some.size(); ++i) {
                 const Cell& cell = some[i];
-                if (error[i] <= kMiddleShare * lattice.tolerance) {
+                if (error[i] <= kMiddleShare * lattice_.tolerance) {
                     worst_ = std::max(worst_, error[i]);
                     settled_.push_back(cell);
-                    settled_pixels += double(cell.x1 - cell.x0) * (cell.y1 - cell.y0);
-                    continue;
+                    settled_pixels_ += double(cell.x1 - cell.x0) * (cell.y1 - cell.y0);
+                } else {
+                    divide(cell, finer);
                 }
-                const int mx = (cell.x0 + cell.x1) / 2, my = (cell.y0 + cell.y1) / 2;
-                const bool wide = mx > cell.x0, high = my > cell.y0;
-                finer.push_back({cell.x0, cell.y0, wide ? mx : cell.x1, high ? my : cell.y1});
-                if (wide) finer.push_back({mx, cell.y0, cell.x1, high ? my : cell.y1});
-                if (high) finer.push_back({cell.x0, my, wide ? mx : cell.x1, cell.y1});
-                if (wide && high) finer.push_back({mx, my, cell.x1, cell.y1});
             }
             progress.stop_if_cancelled();
-            progress(std::min(1.0, settled_pixels / (double(width) * height)));
+            progress(std::min(1.0, settled_pixels_ / (double(lattice_.width) * lattice_.height)));
         }
         cells = std::move(finer);
     }
-    at_ = {};
+}
+
+void SampledMap::divide(const Cell& cell, std::vector<Cell>& into) {
+    const int mx = (cell.x0 + cell.x1) / 2, my = (cell.y0 + cell.y1) / 2;
+    const bool wide = mx > cell.x0, high = my > cell.y0;
+    into.push_back({cell.x0, cell.y0, wide ? mx : cell.x1, high ? my : cell.y1});
+    if (wide) into.push_back({mx, cell.y0, cell.x1, high ? my : cell.y1});
+    if (high) into.push_back({cell.x0, my, wide ? mx : cell.x1, cell.y1});
+    if (wide && high) into.push_back({mx, my, cell.x1, cell.y1});
+}
+
+/// Settled cells whose sides have places, evaluated for a finer neighbour, that the patch is off: divided.
+std::vector<SampledMap::Cell> SampledMap::take_contradicted() {
+    const std::vector<unsigned char> fresh =
+        std::exchange(fresh_, std::vector<unsigned char>(fresh_.size(), 0));
+    std::vector<unsigned char> off(settled_.size(), 0);
+    parallel_for(settled_.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            off[i] = fresh[block_at(settled_[i].x0, settled_[i].y0)] && is_contradicted(settled_[i]);
+    });
+    std::vector<Cell> kept, finer;
+    for (std::size_t i = 0; i < off.size(); ++i) {
+        const Cell& cell = settled_[i];
+        if (!off[i]) {
+            kept.push_back(cell);
+            continue;
+        }
+        settled_pixels_ -= double(cell.x1 - cell.x0) * (cell.y1 - cell.y0);
+        divide(cell, finer);
+    }
+    settled_ = std::move(kept);
+    return finer;
+}
+
+bool SampledMap::is_contradicted(const Cell& cell) const {
+    if (is_exact(cell)) return false;
+    std::optional<Patch> patch;
+    for (int y = cell.y0; y <= cell.y1; ++y) {
+        const int step = y == cell.y0 || y == cell.y1 ? 1 : std::max(1, cell.x1 - cell.x0);
+        for (int x = cell.x0; x <= cell.x1; x += step) {
+            const Id sample = at_[pixel_at(x, y)];
+            if (sample == kNone) continue;
+            if (!patch && !(patch = Patch::of(*this, cell))) return true;
+            if (patch->error_at({(x - cell.x0) / patch->size.x, (y - cell.y0) / patch->size.y},
+                                images_[sample]) > lattice_.tolerance)
+                return true;
+        }
+    }
+    return false;
 }
 
 void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate, bool with_middles) {
@@ -170,6 +238,9 @@ void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& eva
         if (sample != kNone) return sample;
         sample = static_cast<Id>(images_.size() + places.size());
         places.emplace_back(x + 0.5, y + 0.5);
+        for (const int left : {x - 1, x})
+            for (const int above : {y - 1, y})
+                if (left >= 0 && above >= 0) fresh_[block_at(left, above)] = 1;
         return sample;
     };
     for (Cell& cell : cells) {
@@ -182,30 +253,32 @@ void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& eva
     evaluate(places, std::span(images_).subspan(before));
 }
 
-double SampledMap::error_at_middle(const Cell& cell) const {
+double SampledMap::error_of(const Cell& cell, const MapChecks& checks) const {
     if (is_exact(cell)) return 0;
+    const double error = checks.known.empty() ? error_at_middle(cell) : error_of_pixels(cell, checks.known);
+    if (!checks.judge || error > kMiddleShare * lattice_.tolerance) return error;
+    const std::optional<Patch> patch = Patch::of(*this, cell);
+    const auto at = [&](const Vec2& place, MapImages& images) {
+        images.clear();
+        for (std::size_t i = 0; i < patch->count(); ++i)
+            images.push_back(patch->row(i, (place.y - 0.5 - cell.y0) / patch->size.y)
+                                 .at((place.x - 0.5 - cell.x0) / patch->size.x));
+    };
+    const bool stands = patch && checks.judge({cell.x0, cell.y0, cell.x1, cell.y1, at});
+    return stands ? error : std::numeric_limits<double>::infinity();
+}
+
+double SampledMap::error_at_middle(const Cell& cell) const {
     constexpr double kNot = std::numeric_limits<double>::infinity();
     const std::optional<Patch> patch = Patch::of(*this, cell);
     if (!patch) return kNot;
     const int mx = (cell.x0 + cell.x1) / 2, my = (cell.y0 + cell.y1) / 2;
     const MapImages& middle = images_[at_[pixel_at(mx, my)]];
-    if (middle.size() != patch->count()) return kNot;
-    double worst = 0;
-    for (std::size_t i = 0; i < patch->count(); ++i) {
-        const MapImage predicted =
-            patch->row(i, (my - cell.y0) / patch->size.y).at((mx - cell.x0) / patch->size.x);
-        double nearest = kNot;
-        for (const MapImage& exact : middle)
-            if (exact.history == predicted.history)
-                nearest = std::min(nearest, length(exact.position - predicted.position));
-        worst = std::max(worst, nearest);
-    }
-    return worst;
+    return patch->error_at({(mx - cell.x0) / patch->size.x, (my - cell.y0) / patch->size.y}, middle);
 }
 
 /// Of a cell all of whose pixels have the same history, at the worst of them.
 double SampledMap::error_of_pixels(const Cell& cell, const KnownPixels& known) const {
-    if (is_exact(cell)) return 0;
     constexpr double kNot = std::numeric_limits<double>::infinity();
     const std::uint64_t history = known.history[pixel_at(cell.x0, cell.y0)];
     for (int y = cell.y0; y <= cell.y1; ++y)

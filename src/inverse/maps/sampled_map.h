@@ -45,17 +45,34 @@ struct KnownPixels {
     bool empty() const { return history.empty(); }
 };
 
+/// A cell whose nodes a patch joins, and the patch's images at a place in it.
+struct CellImages {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // pixels of its corners, inclusive
+    std::function<void(const Vec2& place, MapImages& images)> at;
+};
+
+/// Whether a patch that is within the tolerance may stand, or is divided. Called from several threads.
+using JudgePatch = std::function<bool(const CellImages& cell)>;
+
+/// What else is known of a map than what is evaluated.
+struct MapChecks {
+    KnownPixels known = {};
+    JudgePatch judge = {};  // none: all stand
+};
+
 /// A map known at every pixel centre of a lattice: exactly, or between exact ones to the tolerance (as found
 /// at the middle of each patch, to half of it; the error of a patch falls with the fourth power of its size).
-/// What is smaller than a cell and shows at none of its corners nor in its middle is missed, unless all
-/// pixels are known beforehand: a patch then has the histories of all its pixels, and is within half of the
-/// tolerance (or as near as floats can tell) at each.
+/// A patch that is off what its sides' places were found to be, where finer cells lie beside it, is divided,
+/// too: what is found at one pixel is followed as far as it goes on from pixel to pixel. What is smaller than
+/// a cell and shows at none of its corners nor in its middle is missed where no judge refuses the patch,
+/// unless all pixels are known beforehand: a patch then has the histories of all its pixels, and is within
+/// half of the tolerance (or as near as floats can tell) at each.
 class SampledMap {
   public:
-    /// Throws Interrupted once `progress` says so, and what `evaluate` throws. `known`: must outlive the
-    /// call only.
+    /// Throws Interrupted once `progress` says so, and what `evaluate` throws. `checks` must
+    /// outlive the call only.
     SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress = {},
-               const KnownPixels& known = {});
+               const MapChecks& checks = {});
 
     int width() const { return lattice_.width; }
     int height() const { return lattice_.height; }
@@ -86,7 +103,21 @@ class SampledMap {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(lattice_.width) +
                static_cast<std::size_t>(x);
     }
+    /// Squares of first cells: where something was evaluated since the cells were last held against it.
+    std::size_t block_at(int x, int y) const {
+        const int step = std::max(1, lattice_.cell);
+        return static_cast<std::size_t>(y / step) * static_cast<std::size_t>(lattice_.width / step + 1) +
+               static_cast<std::size_t>(x / step);
+    }
+    std::size_t block_count() const { return block_at(lattice_.width - 1, lattice_.height - 1) + 1; }
+
+    void settle(std::vector<Cell> cells, const EvaluateMap& evaluate, const MapChecks& checks,
+                const Progress& progress);
+    static void divide(const Cell& cell, std::vector<Cell>& into);
+    std::vector<Cell> take_contradicted();
+    bool is_contradicted(const Cell& cell) const;
     void evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate, bool with_middles);
+    double error_of(const Cell& cell, const MapChecks& checks) const;
     double error_at_middle(const Cell& cell) const;
     double error_of_pixels(const Cell& cell, const KnownPixels& known) const;
 
@@ -94,6 +125,8 @@ class SampledMap {
     std::vector<MapImages> images_;
     std::vector<Id> at_;  // per pixel: its entry in images_; emptied once the cells are settled
     std::vector<Cell> settled_;
+    std::vector<unsigned char> fresh_;  // per block; emptied likewise
+    double settled_pixels_ = 0;
     double worst_ = 0;
 };
 

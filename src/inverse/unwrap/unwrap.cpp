@@ -7,6 +7,7 @@
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "inverse/maps/film_images.h"
+#include "inverse/maps/film_witness.h"
 #include "inverse/maps/proxy.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/unwrap/photo.h"
@@ -231,9 +232,15 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
             find_film_images(world, params, world_places(target, proxy, pixels), images);
         };
         const double share = 1 / double(photos.size());
+        const Progress part = progress.part(double(i) * share, share);
+        const FilmWitness witness(world,
+                                  {params, request.target.width, request.target.height,
+                                   [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }},
+                                  part.part(0, kShareOfWitness));
         const SampledMap map(
             {request.target.width, request.target.height, first_cell(params.visibility), request.tolerance},
-            evaluate, progress.part(double(i) * share, share));
+            evaluate, part.part(kShareOfWitness, 1 - kShareOfWitness),
+            {{}, witness.judge(request.tolerance)});
         result.exact_places += map.exact_count();
         result.worst_accepted = std::max(result.worst_accepted, map.worst_accepted());
         const PhotoDrawer drawer(request, photos[i], target, static_cast<Id>(i));
