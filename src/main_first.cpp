@@ -18,7 +18,9 @@ void draw_first(const std::string& scene_file, const std::string& output) {
     from.file = scene_file;
     Scene scene = load_scene(from);
     check_writable(output, {scene_file});
-    const Warn warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
+    const Warn warn = [](const std::string& text) {
+        std::fprintf(stderr, "trilens-first: warning: %s\n", text.c_str());
+    };
     for (const std::string& warning : scene.warnings) warn(warning);
     PictureRequest request;
     request.frame.camera = scene.own_camera;
@@ -45,7 +47,7 @@ int main(int argc, char** argv) {
     try {
         draw_first(argv[1], argv[2]);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
+        std::fprintf(stderr, "trilens-first: error: %s\n", error.what());
         return 3;
     }
     std::printf("%s\n", argv[2]);

@@ -271,21 +271,19 @@ Anamorph make_anamorph(const World& world, const AnamorphRequest& request, const
     const Vec3 dx = place.rectangle.u / width, dy = -place.rectangle.v / height,
                top_left = place.rectangle.origin + place.rectangle.v;
     const FilmImagesParams params{request.frame, request.optic, Path::kReflect, true, false, progress.cancel};
-    const EvaluateMap evaluate = [&](std::span<const Vec2> dots, std::span<MapImages> images) {
+    PlacesOnFilm dots{params, {page.width, page.height, 32, request.tolerance}, {}, {}};
+    dots.in_world = [&](std::span<const Vec2> asked) {
         std::vector<std::optional<WorldPlace>> places;
-        for (const Vec2& dot : dots) places.push_back(WorldPlace{top_left + dot.x * dx + dot.y * dy, dx, dy});
-        find_film_images(world, params, places, images);
+        for (const Vec2& dot : asked)
+            places.push_back(WorldPlace{top_left + dot.x * dx + dot.y * dy, dx, dy});
+        return places;
     };
-    const auto dot_of = [&](const ShotRay& shot) -> std::optional<Vec2> {
+    dots.shown = [&](const ShotRay& shot) -> std::optional<Vec2> {
         if (shot.state != ShotState::kSeen || shot.object != request.page) return std::nullopt;
         const Vec2 mm = place.mm_of(shot.position) / Vec2(page.paper.width, page.paper.height);
         return Vec2(mm.x * width, (1 - mm.y) * height);
     };
-    const FilmWitness witness(world, {params, page.width, page.height, dot_of},
-                              progress.part(0, kShareOfWitness));
-    const SampledMap map({page.width, page.height, 32, request.tolerance}, evaluate,
-                         progress.part(kShareOfWitness, 1 - kShareOfWitness),
-                         {{}, witness.judge(request.tolerance)});
+    const SampledMap map = map_onto_film(world, dots, progress);
     made.exact_places = map.exact_count();
     made.worst_accepted = map.worst_accepted();
     paint_page(map, PagePainter(request, made.window, 25.4 / request.dpi), made);

@@ -64,19 +64,9 @@ FilmMap MapMaker::unwrap() const {
     const FilmImagesParams params{request.frame, request.optic,
                                   request.path,  !target.has_directions() || proxy.asks_visibility(),
                                   false,         progress.cancel};
-    const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
-        find_film_images(world, params, world_places(target, proxy, pixels), images);
-    };
-    const int wide = request.target.width, high = request.target.height;
-    FilmMap map = empty_map(wide, high, world.scene.film.width, world.scene.film.height);
-    const FilmWitness witness(
-        world,
-        {params, wide, high, [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }},
-        progress.part(0, kShareOfWitness));
-    fill(SampledMap({wide, high, first_cell(params.visibility), request.tolerance}, evaluate,
-                    progress.part(kShareOfWitness, 1 - kShareOfWitness),
-                    {{}, witness.judge(request.tolerance)}),
-         map);
+    FilmMap map = empty_map(request.target.width, request.target.height, world.scene.film.width,
+                            world.scene.film.height);
+    fill(map_onto_film(world, places_on_film(params, request, target, proxy), progress), map);
     if (map.valid_count() == 0)
         throw InputError(scene_title(world.scene), "",
                          "nothing of the target is seen on the film within an optic");

@@ -91,21 +91,30 @@ void find_film_targets(const World& world, const FilmTargetsParams& params, cons
     });
 }
 
-ShownPixels find_shown_pixels(const World& world, const FilmTargetsParams& params, const Target& target,
-                              const Proxy& proxy, const Progress& progress) {
+void shoot_film(const World& world, const ShootRequest& request, const Progress& progress,
+                const std::function<void(std::size_t first, const ShotRays& shots)>& use) {
     const auto width = static_cast<std::size_t>(world.scene.film.width);
     const std::size_t pixels = width * static_cast<std::size_t>(world.scene.film.height);
+    Portions portions(kFewestPixels, kMostPixelsAtOnce);
+    std::vector<Vec2> middles;
+    for (std::size_t first = 0; first < pixels; first += middles.size()) {
+        progress.stop_if_cancelled();
+        middles.resize(portions.next(pixels - first));
+        for (std::size_t p = 0; p < middles.size(); ++p)
+            middles[p] = {double((first + p) % width) + 0.5, double((first + p) / width) + 0.5};
+        use(first, shoot_places(world, request, middles));
+        progress(double(first + middles.size()) / double(pixels));
+    }
+}
+
+ShownPixels find_shown_pixels(const World& world, const FilmTargetsParams& params, const Target& target,
+                              const Proxy& proxy, const Progress& progress) {
+    const std::size_t pixels =
+        static_cast<std::size_t>(world.scene.film.width) * static_cast<std::size_t>(world.scene.film.height);
     ShownPixels shown{std::vector<float>(pixels, -1), std::vector<float>(pixels, -1),
                       std::vector<std::uint64_t>(pixels, 0)};
-    Portions portions(kFewestPixels, kMostPixelsAtOnce);
-    std::vector<Vec2> places;
-    for (std::size_t from = 0; from < pixels; from += places.size()) {
-        progress.stop_if_cancelled();
-        places.resize(portions.next(pixels - from));
-        for (std::size_t p = 0; p < places.size(); ++p)
-            places[p] = {double((from + p) % width) + 0.5, double((from + p) / width) + 0.5};
-        const ShotRays shots = shoot_places(world, params.shoot, places);
-        parallel_for(places.size(), 1024, [&](std::size_t first, std::size_t last) {
+    shoot_film(world, params.shoot, progress, [&](std::size_t from, const ShotRays& shots) {
+        parallel_for(shots.rays.size(), 1024, [&](std::size_t first, std::size_t last) {
             for (std::size_t p = first; p < last; ++p) {
                 const ShotRay& shot = shots.rays[p];
                 const std::optional<Vec2> place = asked_target_of(shots, shot, params, target, proxy);
@@ -115,8 +124,7 @@ ShownPixels find_shown_pixels(const World& world, const FilmTargetsParams& param
                 shown.history[from + p] = history_of(shots, shot);
             }
         });
-        progress(double(from + places.size()) / double(pixels));
-    }
+    });
     return shown;
 }
 

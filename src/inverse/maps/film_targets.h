@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,6 +28,12 @@ struct FilmTargetsParams {
 /// shows another thing so near. For targets of directions the proxy says how far things are.
 void find_film_targets(const World& world, const FilmTargetsParams& params, const Target& target,
                        const Proxy& proxy, std::span<const Vec2> places, std::span<MapImages> images);
+
+/// Shoots one ray through the middle of every pixel of the film, rows from the top, a portion at a time:
+/// use(first, shots), where shots.rays[i] is that of pixel first + i. Throws Interrupted once it is
+/// cancelled.
+void shoot_film(const World& world, const ShootRequest& request, const Progress& progress,
+                const std::function<void(std::size_t first, const ShotRays& shots)>& use);
 
 /// What every pixel of a film shows of a target in its middle, rows from the top: the place, in the target's
 /// pixels (-1 where there is none), and a number of the path and the object, 0 where there is none.

@@ -10,8 +10,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kFewestWitnesses = 1024,
-                      kMostWitnesses = 1 << 18;  // shot between two looks at whether to stop
+constexpr double kShareOfWitness = 0.2;  // of the time, about: the film's rays
 constexpr double kSamePoint = 1e-5;  // of the way: a point at infinity is so far that it is off by 1e-6
 constexpr double kLimit = 10;        // tolerances
 
@@ -26,64 +25,82 @@ bool is_on_way(const World& world, const FilmImagesParams& params, const ShotRay
     return way == params.path.value_or(world.optics[first.optic].mirror ? Path::kReflect : Path::kRefract);
 }
 
-}  // namespace
+/// What one ray for each pixel of the film shows.
+class FilmWitness {
+  public:
+    FilmWitness(const World& world, const PlacesOnFilm& places, const Progress& progress);
 
-FilmWitness::FilmWitness(const World& world, const WitnessRequest& request, const Progress& progress)
-    : width_(request.width),
-      height_(request.height),
+    /// The witness must live longer.
+    JudgePatch judge() const;
+
+  private:
+    struct Seen {
+        std::uint32_t cell = 0;   // the pixel of the lattice whose middle is next to the left and above
+        std::uint32_t pixel = 0;  // of the film
+        float x = 0, y = 0;       // place
+    };
+    void ask(const World& world, const PlacesOnFilm& places, const EventWord& word, const Progress& progress);
+    bool shows_all(const CellImages& cell, double limit) const;
+    bool shows_nothing_else(const CellImages& cell) const;
+    std::uint32_t cell_of(const Vec2& place) const;
+
+    MapLattice lattice_;
+    int film_width_, film_height_;
+    bool visibility_, has_glass_;
+    std::vector<Seen> seen_;             // by cell
+    std::vector<unsigned char> hidden_;  // per film pixel: its ray shows no place, and is the only one
+};
+
+FilmWitness::FilmWitness(const World& world, const PlacesOnFilm& places, const Progress& progress)
+    : lattice_(places.lattice),
       film_width_(world.scene.film.width),
       film_height_(world.scene.film.height),
-      visibility_(request.images.visibility) {
-    const FilmImagesParams& params = request.images;
-    const bool has_glass = std::ranges::any_of(world.optics, [](const auto& optic) { return !optic.mirror; });
-    const auto width = static_cast<std::size_t>(film_width_);
-    const std::size_t pixels = width * static_cast<std::size_t>(film_height_);
-    hidden_.assign(pixels, 0);
+      visibility_(places.images.visibility),
+      has_glass_(std::ranges::any_of(world.optics, [](const auto& optic) { return !optic.mirror; })),
+      hidden_(static_cast<std::size_t>(film_width_) * static_cast<std::size_t>(film_height_), 0) {
     std::vector<EventWord> words{EventWord()};
-    if (has_glass && params.path == Path::kReflect) words.emplace_back("R");
-    if (params.path == Path::kDirect) words = {EventWord("D")};
-
-    Portions portions(kFewestWitnesses, kMostWitnesses);
-    std::vector<Vec2> middles;
-    for (std::size_t from = 0; from < pixels; from += middles.size()) {
-        progress.stop_if_cancelled();
-        middles.resize(portions.next(pixels - from));
-        for (std::size_t p = 0; p < middles.size(); ++p)
-            middles[p] = {double((from + p) % width) + 0.5, double((from + p) / width) + 0.5};
-        for (const EventWord& word : words) {
-            const ShotRays shots = shoot_places(world, {params.frame.camera, word}, middles);
-            std::vector<std::optional<Vec2>> places(middles.size());
-            parallel_for(middles.size(), 256, [&](std::size_t first, std::size_t last) {
-                for (std::size_t p = first; p < last; ++p) {
-                    const ShotRay& shot = shots.rays[p];
-                    const bool on_way = is_on_way(world, params, shots, shot);
-                    if (on_way) places[p] = request.place(shot);
-                    const bool is_only_one =
-                        shot.followed() && !shot.cut && (shot.event_count == 0 || !has_glass);
-                    hidden_[from + p] |= is_only_one && !(on_way && places[p]);
-                }
-            });
-            for (std::size_t p = 0; p < places.size(); ++p)
-                if (places[p])
-                    seen_.push_back({cell_of(*places[p]), static_cast<std::uint32_t>(from + p),
-                                     static_cast<float>(places[p]->x), static_cast<float>(places[p]->y)});
-        }
-        progress(double(from + middles.size()) / double(pixels));
-    }
+    if (has_glass_ && places.images.path == Path::kReflect) words.emplace_back("R");
+    if (places.images.path == Path::kDirect) words = {EventWord("D")};
+    const double share = 1 / double(words.size());
+    for (std::size_t w = 0; w < words.size(); ++w)
+        ask(world, places, words[w], progress.part(double(w) * share, share));
     std::ranges::sort(seen_, {}, [](const Seen& one) { return std::pair(one.cell, one.pixel); });
 }
 
+void FilmWitness::ask(const World& world, const PlacesOnFilm& places, const EventWord& word,
+                      const Progress& progress) {
+    const FilmImagesParams& params = places.images;
+    shoot_film(world, {params.frame.camera, word}, progress, [&](std::size_t from, const ShotRays& shots) {
+        std::vector<std::optional<Vec2>> shown(shots.rays.size());
+        parallel_for(shown.size(), 256, [&](std::size_t first, std::size_t last) {
+            for (std::size_t p = first; p < last; ++p) {
+                const ShotRay& shot = shots.rays[p];
+                if (is_on_way(world, params, shots, shot)) shown[p] = places.shown(shot);
+                const bool is_only_one =
+                    shot.followed() && !shot.cut && (shot.event_count == 0 || !has_glass_);
+                hidden_[from + p] |= is_only_one && !shown[p];
+            }
+        });
+        for (std::size_t p = 0; p < shown.size(); ++p)
+            if (shown[p])
+                seen_.push_back({cell_of(*shown[p]), static_cast<std::uint32_t>(from + p),
+                                 static_cast<float>(shown[p]->x), static_cast<float>(shown[p]->y)});
+    });
+}
+
 std::uint32_t FilmWitness::cell_of(const Vec2& place) const {
-    const auto x = static_cast<std::uint32_t>(std::clamp(place.x - 0.5, 0.0, std::max(0.0, width_ - 2.0)));
-    const auto y = static_cast<std::uint32_t>(std::clamp(place.y - 0.5, 0.0, std::max(0.0, height_ - 2.0)));
-    return y * static_cast<std::uint32_t>(width_) + x;
+    const auto x =
+        static_cast<std::uint32_t>(std::clamp(place.x - 0.5, 0.0, std::max(0.0, lattice_.width - 2.0)));
+    const auto y =
+        static_cast<std::uint32_t>(std::clamp(place.y - 0.5, 0.0, std::max(0.0, lattice_.height - 2.0)));
+    return y * static_cast<std::uint32_t>(lattice_.width) + x;
 }
 
 bool FilmWitness::shows_all(const CellImages& cell, double limit) const {
     MapImages images;
     const int end_x = std::max(cell.x1, cell.x0 + 1), end_y = std::max(cell.y1, cell.y0 + 1);
     for (int y = cell.y0; y < end_y; ++y) {
-        const auto row = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width_);
+        const auto row = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(lattice_.width);
         const auto first = row + static_cast<std::uint32_t>(cell.x0),
                    end = row + static_cast<std::uint32_t>(end_x);
         for (auto one = std::ranges::lower_bound(seen_, first, {}, &Seen::cell);
@@ -115,12 +132,14 @@ bool FilmWitness::shows_nothing_else(const CellImages& cell) const {
     return true;
 }
 
-JudgePatch FilmWitness::judge(double tolerance) const {
-    return [this, limit = kLimit * tolerance](const CellImages& cell) {
+JudgePatch FilmWitness::judge() const {
+    return [this, limit = kLimit * lattice_.tolerance](const CellImages& cell) {
         return shows_all(cell, limit) && (!visibility_ || shows_nothing_else(cell));
     };
 }
 
+/// The place of a target that a ray shows; none where the target's place is not what the ray goes to, as
+/// where another object lies between it and the centre of directions.
 std::optional<Vec2> witnessed_place(const ShotRay& shot, const Target& target, const Proxy& proxy) {
     const std::optional<Vec2> place = target_of(shot, target, proxy);
     if (!place) return std::nullopt;
@@ -133,6 +152,25 @@ std::optional<Vec2> witnessed_place(const ShotRay& shot, const Target& target, c
     const bool hides = shot.state == ShotState::kSeen && shot.t < far * (1 - kSamePoint);
     if (hides && proxy.asks_visibility()) return std::nullopt;
     return place;
+}
+
+}  // namespace
+
+PlacesOnFilm places_on_film(const FilmImagesParams& images, const TargetRequest& request,
+                            const Target& target, const Proxy& proxy) {
+    return {images,
+            {request.target.width, request.target.height, first_cell(images.visibility), request.tolerance},
+            [&](std::span<const Vec2> places) { return world_places(target, proxy, places); },
+            [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }};
+}
+
+SampledMap map_onto_film(const World& world, const PlacesOnFilm& places, const Progress& progress) {
+    const FilmWitness witness(world, places, progress.part(0, kShareOfWitness));
+    const EvaluateMap evaluate = [&](std::span<const Vec2> asked, std::span<MapImages> images) {
+        find_film_images(world, places.images, places.in_world(asked), images);
+    };
+    return SampledMap(places.lattice, evaluate, progress.part(kShareOfWitness, 1 - kShareOfWitness),
+                      {{}, witness.judge()});
 }
 
 }  // namespace trilens

@@ -228,19 +228,9 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
                                 !target.has_directions() || proxy.asks_visibility()};
         params.frame.camera = photos[i].camera;
         params.cancel = progress.cancel;
-        const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
-            find_film_images(world, params, world_places(target, proxy, pixels), images);
-        };
         const double share = 1 / double(photos.size());
-        const Progress part = progress.part(double(i) * share, share);
-        const FilmWitness witness(world,
-                                  {params, request.target.width, request.target.height,
-                                   [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }},
-                                  part.part(0, kShareOfWitness));
-        const SampledMap map(
-            {request.target.width, request.target.height, first_cell(params.visibility), request.tolerance},
-            evaluate, part.part(kShareOfWitness, 1 - kShareOfWitness),
-            {{}, witness.judge(request.tolerance)});
+        const SampledMap map = map_onto_film(world, places_on_film(params, request, target, proxy),
+                                             progress.part(double(i) * share, share));
         result.exact_places += map.exact_count();
         result.worst_accepted = std::max(result.worst_accepted, map.worst_accepted());
         const PhotoDrawer drawer(request, photos[i], target, static_cast<Id>(i));

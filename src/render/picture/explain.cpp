@@ -41,9 +41,7 @@ void describe_optic(const World& world, const Viewer& viewer, const SampleViews&
         explained.ends.push_back({end, {steps.begin(), steps.end()}, std::nullopt});
         Vec3& weight = explained.ends.back().weight;
         weight *= through_volumes(shown, view) * (end.path == Path::kReflect ? first.reflect : first.refract);
-        if (end.medium != kNone && end.hit.seen())
-            weight *= volume_transmittance(world.scene.materials[world.optics[end.medium].material],
-                                           path_length(end));
+        if (end.hit.seen()) weight *= body_transmittance(path_world(world), end.medium, path_length(end));
         if (end.node == kNone || view.leaf == kNone || !viewer.has_facets()) continue;
         const PathNode& node = viewer.paths(view.optic).nodes[end.node];
         explained.ends.back().facet_kind = facet_kind(node.mesh, node.facet_of(view.leaf));
