@@ -38,6 +38,8 @@ struct DrawnEdges {
     std::vector<std::size_t> first_of;  // per vertex and one more: where its edges begin in `of_vertex`
     std::vector<Id> of_vertex;          // indices into `edge`
     std::vector<Vec3> normal;           // per triangle, not unit
+    std::vector<std::array<Id, 3>>
+        neighbour;  // per triangle and edge: the other triangle there, kNone where there is not exactly one
 
     std::span<const Id> at(Id vertex) const {
         return {of_vertex.data() + first_of[vertex], first_of[vertex + 1] - first_of[vertex]};

@@ -83,6 +83,7 @@ DrawnEdges drawn_edges(const TriangleScene& scene, const EdgeRules& rules) {
     for (const IdTriple& c : scene.triangles)
         edges.normal.push_back(
             cross(scene.points[c[1]] - scene.points[c[0]], scene.points[c[2]] - scene.points[c[0]]));
+    edges.neighbour.assign(scene.size(), {kNone, kNone, kNone});
     const std::vector<Use> uses = sorted_uses(edges.vertex_of);
     for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
         while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) ++end;
@@ -90,6 +91,8 @@ DrawnEdges drawn_edges(const TriangleScene& scene, const EdgeRules& rules) {
         if (end - i == 2) {
             edge.other = uses[i + 1].triangle;
             edge.same_winding = uses[i].forward != uses[i + 1].forward;
+            edges.neighbour[edge.triangle][edge.edge] = edge.other;
+            edges.neighbour[edge.other][uses[i + 1].edge] = edge.triangle;
             if (!describe_pair(edges, rules, edge)) continue;
         }
         edges.edge.push_back(edge);

@@ -10,6 +10,7 @@
 #include "base/util/parallel.h"
 #include "trilinear/outline.h"
 #include "vector/caustic.h"
+#include "vector/facet_edges.h"
 
 namespace trilens {
 namespace {
@@ -41,7 +42,7 @@ class FacetPen {
     }
 
     void draw(std::vector<EdgeCurve>& curves) const {
-        for (const Id e : candidates(owned_.of(facet_))) draw_edge(e, curves);
+        for (const Id e : edges_at_samples(view_, facet_, owned_.of(facet_))) draw_edge(e, curves);
     }
 
   private:
@@ -54,8 +55,6 @@ class FacetPen {
         const IdTriple& c = view_.scene.triangles[index];
         return {{view_.scene.points[c[0]], view_.scene.points[c[1]], view_.scene.points[c[2]]}};
     }
-    /// Edges whose images a facet of these samples may show, ascending.
-    std::vector<Id> candidates(std::span<const Id> samples) const;
     void draw_edge(Id index, std::vector<EdgeCurve>& curves) const;
     bool is_left_to_neighbour(const ConicArc& arc, Id index) const;
     std::vector<Section> sides(const SceneTriangle& scene_triangle, std::size_t edge) const;
@@ -71,35 +70,6 @@ class FacetPen {
     Coplanarity cubic_;
     Mat3 screen_{0};
 };
-
-std::vector<Id> FacetPen::candidates(std::span<const Id> samples) const {
-    std::vector<Id> found;
-    if (view_.wire) {
-        for (Id e = 0; e < view_.edges.edge.size(); ++e) found.push_back(e);
-        return found;
-    }
-    // What is seen at the facet's samples and beside them, and the edges around it.
-    const SampleLattice lattice{view_.grid};
-    std::vector<Id> seen;
-    for (const Id s : samples) {
-        const int column = lattice.column(s), row = lattice.row(s);
-        for (int dy = -1; dy <= 1; ++dy)
-            for (int dx = -1; dx <= 1; ++dx) {
-                if (!lattice.holds(column + dx, row + dy)) continue;
-                const Id triangle_there = view_.triangle[lattice.sample(column + dx, row + dy)];
-                if (triangle_there != kNone && (seen.empty() || seen.back() != triangle_there))
-                    seen.push_back(triangle_there);
-            }
-    }
-    std::sort(seen.begin(), seen.end());
-    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-    for (const Id t : seen)
-        for (const Id vertex : view_.edges.vertex_of[t])
-            for (const Id e : view_.edges.at(vertex)) found.push_back(e);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
-}
 
 /// The sides of the triangle's shapes along one of its edges, t >= 0.
 std::vector<Section> FacetPen::sides(const SceneTriangle& scene_triangle, std::size_t edge) const {
@@ -124,9 +94,10 @@ bool FacetPen::is_left_to_neighbour(const ConicArc& arc, Id index) const {
                 const Id wanted = corners[static_cast<std::size_t>(corner % 3)];
                 return std::find(others.begin(), others.end(), wanted) != others.end();
             };
-            if (f >= facet_ || !has(k + 1) || !has(k + 2) || !view_.mesh.has_rays(f)) continue;
-            const std::vector<Id> drawn = candidates(owned_.of(f));
-            if (!owned_.of(f).empty() && std::binary_search(drawn.begin(), drawn.end(), index)) return true;
+            if (f >= facet_ || !has(k + 1) || !has(k + 2) || !view_.mesh.has_rays(f) || owned_.of(f).empty())
+                continue;
+            const std::vector<Id> drawn = edges_at_samples(view_, f, owned_.of(f));
+            if (std::binary_search(drawn.begin(), drawn.end(), index)) return true;
         }
     }
     return false;

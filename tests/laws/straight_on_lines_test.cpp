@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "laws/line_borders.h"
 #include "support/test.h"
 #include "trilens/trilens.h"
 
 using namespace trilens;
+using namespace trilens_test;
 
 namespace {
 
@@ -121,38 +123,6 @@ class StraightScene {
     double depth_ = 5;
 };
 
-/// Between pixels that show different objects.
-std::vector<Vec2> object_borders(const Renderer& renderer) {
-    PictureRequest request;
-    request.layers.layers = {"position", "reflect"};
-    const Image image = renderer.draw(request).image;
-    const std::vector<Id>& direct = image.find("directID.object")->ids();
-    const Channel* reflected = image.find("reflectID.object");
-    const auto seen = [&](int x, int y) {
-        const std::size_t at = static_cast<std::size_t>(y * image.width + x);
-        return std::pair(direct[at], reflected ? reflected->ids()[at] : kNone);
-    };
-    std::vector<Vec2> borders;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            if (x > 0 && seen(x, y) != seen(x - 1, y)) borders.push_back({x, y + 0.5});
-            if (y > 0 && seen(x, y) != seen(x, y - 1)) borders.push_back({x + 0.5, y});
-        }
-    return borders;
-}
-
-double distance_to_lines(const Vec2& p, const std::vector<EdgeLine>& lines) {
-    double nearest = HUGE_VAL;
-    for (const EdgeLine& line : lines)
-        for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
-            const Vec2 along = line.points[i + 1] - line.points[i];
-            const double u =
-                std::clamp(dot(p - line.points[i], along) / std::max(dot(along, along), 1e-300), 0.0, 1.0);
-            nearest = std::min(nearest, length(p - line.points[i] - u * along));
-        }
-    return nearest;
-}
-
 /// A card behind the eye whose image in a square mirror has two sides on the borders of any even number of
 /// facets: along the rows, the columns and, for any number, the diagonal.
 Scene on_facet_borders(int resolution) {
@@ -176,14 +146,6 @@ Scene on_facet_borders(int resolution) {
     return scene;
 }
 
-double length_of(const std::vector<EdgeLine>& lines) {
-    double sum = 0;
-    for (const EdgeLine& line : lines)
-        for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
-            sum += length(line.points[i + 1] - line.points[i]);
-    return sum;
-}
-
 }  // namespace
 
 TEST_CASE("every border between objects has a line, however parallel its edge is to the film or a mirror",
@@ -195,19 +157,11 @@ TEST_CASE("every border between objects has a line, however parallel its edge is
             tilts.insert(tilts.end(), {0.05, 0.3});
             for (const double tilt : tilts) {
                 const Renderer renderer(scene.seen_by(view, tilt));
-                const std::vector<EdgeLine> lines = renderer.draw_lines({}).edge_lines;
-                const std::vector<Vec2> borders = object_borders(renderer);
-                std::size_t without = 0;
-                double farthest = 0;
-                for (const Vec2& p : borders) {
-                    const double off = distance_to_lines(p, lines);
-                    without += !(off <= 1);
-                    farthest = std::max(farthest, off);
-                }
-                INFO(view.name << ", seed " << seed << ", tilt " << tilt << ": " << without << " of "
-                               << borders.size() << " without a line, farthest " << farthest);
-                REQUIRE(borders.size() > 100);
-                CHECK(without == 0);
+                const LinedBorders borders = lined_borders(renderer);
+                INFO(view.name << ", seed " << seed << ", tilt " << tilt << ": " << borders.without << " of "
+                               << borders.count << " without a line, farthest " << borders.farthest);
+                REQUIRE(borders.count > 100);
+                CHECK(borders.without == 0);
             }
         }
 }
