@@ -67,8 +67,8 @@ Scene balls_over(const CameraKind& camera, Over over, Id divisions, unsigned see
     }
     if (over == Over::kNothing) return scene;
     Mesh mirror;
-    mirror.name = "mirror", mirror.role = Role::kOptic, mirror.material = 1, mirror.resolution = 8;
-    mirror.primitive = Primitive{.axis = {0, 0, 1}, .kind = PlanePrimitive{.size = {4.5, 3.4}}};
+    mirror.name = "mirror", mirror.role = Role::kOptic, mirror.material = 1, mirror.resolution = 8, mirror.rays = CornerRays::kInterpolated;
+    mirror.primitive = Primitive{.axis = {0, 0, 1}, .kind = PlanePrimitive{.size = {9, 7}}};
     if (over == Over::kSphere) mirror.primitive = Primitive{.kind = SpherePrimitive{.radius = 1.7}};
     scene.meshes.push_back(mirror);
     return scene;
@@ -81,13 +81,13 @@ TEST_CASE("a ball's silhouette is whole, however finely the ball is divided", "[
                                           FisheyeCamera{.fov = 50}};
     for (std::size_t camera = 0; camera < cameras.size(); ++camera)
         for (const Over over : {Over::kNothing, Over::kPlane, Over::kSphere})
-            for (const Id divisions : {6u, 24u, 70u, 200u}) {
+            for (const Id divisions : {24u, 100u}) {
                 const Renderer renderer(balls_over(cameras[camera], over, divisions, divisions + 7));
                 const LinedBorders borders = lined_borders(renderer);
                 INFO("camera " << camera << ", over " << static_cast<int>(over) << ", " << divisions
                                << " divisions: " << borders.without << " of " << borders.count
                                << " without a line, farthest " << borders.farthest);
-                REQUIRE(borders.count > 100);
+                REQUIRE(borders.count > 40);
                 CHECK(borders.without == 0);
             }
 }
