@@ -254,6 +254,7 @@ void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid
         trace_samples({world_, static_cast<Id>(i), paths_[i].context().camera, grid, reach(),
                        static_cast<bool>(draw_volumes_)},
                       of_optic[i], views, ends[i]);
+    count_traced_from_eye(frame_.camera, grid, samples, views.samples);
 }
 
 /// Of t along a camera's ray: to what its sample shows first.

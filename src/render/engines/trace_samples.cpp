@@ -87,6 +87,7 @@ void trace_samples(const TraceSamplesParams& params, std::span<const TracedSampl
                     {on_optic, own.ends, own.steps, followed,
                      params.volumes ? &views.volumes[sample] : nullptr});
                 view.ray = of_facets;
+                view.depth = hit->t;
                 own.sample.resize(own.ends.size(), sample);
             }
         }

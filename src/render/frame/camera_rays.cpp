@@ -210,6 +210,17 @@ void count_from_eye(const CameraRays& camera, std::span<SampleView> views) {
         if (view.hit.seen() || view.optic != kNone) view.depth += camera.near_depth;
 }
 
+void count_traced_from_eye(const CameraRays& camera, const SampleGrid& grid, std::span<const Id> samples,
+                           std::span<SampleView> views) {
+    for (const Id s : samples) {
+        SampleView& view = views[s];
+        if (!view.hit.seen() && view.optic == kNone) continue;
+        if (const auto own = camera.linear ? std::nullopt : exact_ray(camera, grid.position(s)))
+            view.depth *= length(view.ray.direction) / length(own->direction);
+        view.depth += camera.near_depth;
+    }
+}
+
 namespace {
 
 constexpr int kCells = 64;  // buckets along each side of the film

@@ -49,6 +49,11 @@ FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, st
 /// Adds the depth at which the camera's rays begin to the depths of what is seen.
 void count_from_eye(const CameraRays& camera, std::span<SampleView> views);
 
+/// The same of samples whose exact rays were followed; of a camera that is not linear these have the length of
+/// its facets' rays until now.
+void count_traced_from_eye(const CameraRays& camera, const SampleGrid& grid, std::span<const Id> samples,
+                           std::span<SampleView> views);
+
 /// The rays that the mesh interpolates are the camera's exact ones; a place without a facet has none. A point
 /// may have an image in every facet, so that surface grids have no place of their own on its film: `place` is
 /// none everywhere, `places` lists the images facet by facet. Screens are affine.
