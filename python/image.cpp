@@ -105,6 +105,31 @@ void bind_mapping(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
              "keeps\n"
              "the image alive. Raises KeyError.")
         .def("keys", names_in, "The channels' names, in the image's order.")
+        .def(
+            "values",
+            [](const py::object& self) {
+                py::list values;
+                for (const std::string& name : names_in(self.cast<const HeldImage&>()))
+                    values.append(view_of(self, name));
+                return values;
+            },
+            "The channels' arrays, in the image's order: views, as [name] has them.")
+        .def(
+            "items",
+            [](const py::object& self) {
+                py::list items;
+                for (const std::string& name : names_in(self.cast<const HeldImage&>()))
+                    items.append(py::make_tuple(name, view_of(self, name)));
+                return items;
+            },
+            "Names with arrays, in the image's order.")
+        .def(
+            "get",
+            [](const py::object& self, const std::string& name, const py::object& otherwise) -> py::object {
+                const bool has = self.cast<const HeldImage&>().image.find(name) != nullptr;
+                return has ? py::object(view_of(self, name)) : otherwise;
+            },
+            py::arg("name"), py::arg("default") = py::none(), "image[name], or the default.")
         .def("__iter__", [](const HeldImage& held) { return py::iter(py::cast(names_in(held))); })
         .def("__len__", [](const HeldImage& held) { return held.image.channels.size(); })
         .def("__contains__",

@@ -269,6 +269,20 @@ void bind_scene(py::module_& module) {
         .def(
             "to_dict", [](const Scene& scene) { return json_value(scene.resolved); },
             "The resolved scene as a new dict, which parse_scene takes.")
+        .def("__copy__", [](const py::object& self) { return self; })
+        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; })
+        .def(py::pickle(
+            [](const Scene& scene) {
+                return py::make_tuple(scene.resolved, scene.folder, scene.label, scene.file);
+            },
+            [](const py::tuple& state) {
+                const auto text = [&](std::size_t k) { return state[k].cast<std::string>(); };
+                const std::string title = text(3).empty() ? text(2) : text(3);
+                const py::cpp_function told_before([](const py::object&) {});
+                Scene scene = parse({text(0), text(1), title}, {}, 0, told_before);
+                scene.label = text(2), scene.file = text(3);
+                return scene;
+            }))
         .def(
             "with_overrides",
             [](const Scene& scene, const py::dict& overrides, int resolution, const py::object& warn) {

@@ -143,6 +143,14 @@ def test_windows_and_metadata_are_checked():
         trilens.Image.from_arrays(array, metadata={"other:note": "x"})
 
 
+def test_an_image_is_a_mapping(image):
+    assert [name for name, _ in image.items()] == image.keys() == list(image)
+    assert all(np.shares_memory(array, image[name]) for name, array in image.items())
+    assert all(np.shares_memory(array, image[name]) for name, array in zip(image, image.values()))
+    assert np.shares_memory(image.get("R"), image["R"])
+    assert image.get("no such") is None and image.get("no such", 3) == 3
+
+
 def test_copies_and_pickles_are_images_of_their_own(image):
     for twin in (copy.copy(image), copy.deepcopy(image), pickle.loads(pickle.dumps(image))):
         assert twin.names == image.names and twin.window == image.window and twin.metadata == image.metadata

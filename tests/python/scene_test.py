@@ -1,5 +1,7 @@
 """Scenes: what is in them, and how they change."""
+import copy
 import json
+import pickle
 import warnings
 
 import numpy as np
@@ -41,6 +43,16 @@ def test_overrides_and_resolution_stand_in_the_resolved_scene(sphere):
     again = sphere.with_overrides({"/film/spp": 2}, resolution=5)
     assert (again.film.spp, again.film.width, again.meshes[0].resolution) == (2, 128, 5)
     assert (sphere.film.spp, sphere.meshes[0].resolution) == (1, 16) and again.file == sphere.file
+
+
+def test_a_scene_is_copied_and_pickled(sphere):
+    assert copy.copy(sphere) is sphere and copy.deepcopy({"scene": sphere})["scene"] is sphere
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        twin = pickle.loads(pickle.dumps(sphere))
+    assert twin.resolved == sphere.resolved
+    assert (twin.file, twin.label, twin.folder) == (sphere.file, sphere.label, sphere.folder)
+    assert trilens.Renderer(twin).digest == trilens.Renderer(sphere).digest
 
 
 def test_an_image_carries_its_scene(image, sphere, tmp_path):

@@ -41,7 +41,8 @@ const std::vector<Field<WishMap>>& map_fields() {
         return std::vector<Field<W>>{
             choice("type", &W::type).without_default(),
             setting("origin", &W::origin, ref("vec3"),
-                    "What is seen at the rectangle's corner -tangent, -(normal x tangent).")
+                    "What is seen at s = 0, t = 0: of an eye straight before it the rectangle's corner "
+                    "-tangent, -(normal x tangent).")
                 .without_default()
                 .of({"plane!"}),
             setting("u", &W::u, ref("vec3"), "From there along the tangent, all of it.")
@@ -85,7 +86,10 @@ const std::vector<Field<DesignWish>>& wish_fields() {
             part<D>("patch", ref("patch"), "The rectangle under the mirror."),
             part<D>("lens", ref("lens"),
                     "A lens instead of a mirror, its back a plane; what is designed is its front."),
-            part<D>("wish", ref("wish"), "What is seen at (s, t), 0..1 each over the rectangle."),
+            part<D>("wish", ref("wish"),
+                    "What is seen at (s, t), 0..1 each over the mirror or lens as the eye sees it: in perspective "
+                    "onto the plane through the rectangle's middle at right angles to the view, over its "
+                    "foreshortened sides."),
             setting("anchor", &D::anchor, several(2, ref("number")),
                     "Where the mirror stays in the rectangle, from its middle, along both sides."),
             setting("fairness", &D::fairness, ref("notNegative"),
