@@ -52,7 +52,7 @@ def test_a_scene_is_copied_and_pickled(sphere):
         twin = pickle.loads(pickle.dumps(sphere))
     assert twin.resolved == sphere.resolved
     assert (twin.file, twin.label, twin.folder) == (sphere.file, sphere.label, sphere.folder)
-    assert trilens.Renderer(twin).digest == trilens.Renderer(sphere).digest
+    assert trilens.Renderer(twin).digest() == trilens.Renderer(sphere).digest()
 
 
 def test_an_image_carries_its_scene(image, sphere, tmp_path):
