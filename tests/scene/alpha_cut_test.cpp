@@ -3,7 +3,9 @@
 #include <memory>
 #include <random>
 
+#include "base/image/texture_lookup.h"
 #include "scene/data/alpha_cut.h"
+#include "scene/data/polygons.h"
 #include "scene/meshes/weld.h"
 #include "support/test.h"
 
@@ -122,6 +124,68 @@ TEST_CASE("law: what is left of a cut-out is what is opaque", "[scene][law]") {
         }
     }
     CHECK(checked > 3000);
+}
+
+TEST_CASE("masks of holes and of whole texels are cut without triangles that have no area", "[scene]") {
+    std::mt19937_64 random(3);
+    for (int trial = 0; trial < 6; ++trial) {
+        std::vector<float> alpha;
+        for (int i = 0; i < 64; ++i) alpha.push_back(random() % 2 == 0 ? 0.0f : 1.0f);
+        ObjectMesh mesh = square(1);
+        cut_by_alpha(mesh, {masked(8, 8, alpha)});
+        REQUIRE(mesh.triangles.size() > 50);
+        CHECK(count_without_area(mesh) == 0);
+    }
+    // Half of it is there, up to an edge along the grid.
+    ObjectMesh mesh = square(1);
+    cut_by_alpha(mesh, {masked(2, 1, {0, 1})});
+    CHECK(count_without_area(mesh) == 0);
+    CHECK(area_of(mesh) == Approx(0.5).epsilon(1e-12));
+    // A triangle without area stays as it is.
+    mesh = square(1);
+    mesh.points[3] = mesh.points[0];
+    cut_by_alpha(mesh, {masked(8, 8, std::vector<float>(64, 0.0f))});
+    CHECK(mesh.triangles == std::vector<IdTriple>{{0, 2, 3}});
+}
+
+TEST_CASE("law: of opaque texels that face each other as much is left as opacity's saddle says",
+          "[scene][law]") {
+    // Between four texels the opacity is (1-u)(1-v) a + u v c + ((1-u) v + u (1-v)) b.
+    const auto left = [](float a, float b, float c, double cutoff = 0.5) {
+        Material material = masked(2, 2, {a, b, b, c});
+        material.alpha_cutoff = cutoff;
+        material.base_color_sampler.wrap_s = material.base_color_sampler.wrap_t = Wrap::kClampToEdge;
+        ObjectMesh mesh = square(1);
+        cut_by_alpha(mesh, {material});
+        return mesh;
+    };
+    CHECK(area_of(left(1, 0, 1)) == Approx(0.5).epsilon(1e-12));
+    CHECK(area_of(left(0, 1, 0)) == Approx(0.5).epsilon(1e-12));
+    CHECK(covers(left(1, 0.1f, 1), {0.5, 0.5}));
+    CHECK(!covers(left(0.9f, 0, 0.9f), {0.5, 0.5}));
+    // A saddle a fifth, and some more, of the way, where of a quarter between the texels the ends are opaque.
+    CHECK(covers(left(0.35f, 0.15f, 0.95f, 0.3), {0.35, 0.65}));
+    CHECK(!covers(left(0.35f, 0.15f, 0.7f, 0.3), {0.383, 0.617}));
+
+    // Shares of masks of black and white, against a grid of points.
+    std::mt19937_64 random(5);
+    double off = 0;
+    for (int trial = 0; trial < 8; ++trial) {
+        std::vector<float> alpha;
+        for (int i = 0; i < 64; ++i) alpha.push_back(random() % 2 == 0 ? 0.0f : 1.0f);
+        const Material material = masked(8, 8, alpha);
+        ObjectMesh mesh = square(1);
+        cut_by_alpha(mesh, {material});
+        double expected = 0;
+        for (int j = 0; j < 128; ++j)
+            for (int i = 0; i < 128; ++i)
+                if (lookup_alpha(*material.base_color_texture, material.base_color_sampler,
+                                 {(i + 0.5) / 128, (j + 0.5) / 128}) >= 0.5)
+                    expected += 1.0 / (128 * 128);
+        CHECK(area_of(mesh) == Approx(expected).margin(0.015));
+        off += (area_of(mesh) - expected) / 8;
+    }
+    CHECK(std::abs(off) < 0.005);
 }
 
 TEST_CASE("points of one place are welded, and quads joined again", "[scene]") {

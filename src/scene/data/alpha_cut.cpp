@@ -6,11 +6,13 @@
 #include <utility>
 
 #include "base/image/texture_lookup.h"
+#include "scene/data/polygons.h"
 
 namespace trilens {
 namespace {
 
 constexpr double kMostCells = 1 << 22;  // of one triangle
+constexpr double kLeastArea = 1e-12;    // of a piece that is kept, in cells
 
 /// A place on the picture in half texels from the first texel's middle; y downward.
 using GridPlace = Vec2;
@@ -61,23 +63,65 @@ GridPolygon left_of(const GridPolygon& polygon, const GridPlace& a, const GridPl
     return kept;
 }
 
-/// The part of one cell that is opaque; convex.
-GridPolygon opaque_part(long long x, long long y, const std::array<double, 4>& values) {
-    const std::array<GridPlace, 4> corners{GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1),
-                                           GridPlace(x, y + 1)};
-    GridPolygon part;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const std::size_t next = (k + 1) % 4;
-        if (values[k] >= 0) part.push_back(corners[k]);
-        if ((values[k] >= 0) != (values[next] >= 0)) {
-            // From the lesser corner, so that both cells of an edge have the same point.
-            const bool forward = k < 2;
-            const std::size_t from = forward ? k : next, to = forward ? next : k;
-            part.push_back(corners[from] +
-                           values[from] / (values[from] - values[to]) * (corners[to] - corners[from]));
-        }
+/// What of one cell is opaque, where not all of it is: convex parts. A corner that is just as opaque as the
+/// cutoff lies on the contour.
+class CellParts {
+  public:
+    CellParts(long long x, long long y, const std::array<double, 4>& values)
+        : corners_{GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)},
+          values_(values) {}
+
+    std::vector<GridPolygon> parts() const {
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}})
+            if (is_inside(k) && is_inside(k + 2) && !is_inside(k + 1) && !is_inside((k + 3) % 4))
+                return of_diagonal(k);
+        return {around()};
     }
-    return part;
+
+  private:
+    bool is_inside(std::size_t k) const { return values_[k] > 0; }
+
+    /// Where the contour crosses the edge from a corner to the next, or to the one before.
+    GridPlace crossing(std::size_t k, std::size_t other) const {
+        // From the lesser corner, so that both cells of an edge have the same point.
+        const std::size_t edge = (k + 1) % 4 == other ? k : other, next = (edge + 1) % 4;
+        const auto [from, to] = edge < 2 ? std::pair(edge, next) : std::pair(next, edge);
+        return corners_[from] +
+               values_[from] / (values_[from] - values_[to]) * (corners_[to] - corners_[from]);
+    }
+
+    GridPolygon around() const {
+        GridPolygon part;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::size_t next = (k + 1) % 4;
+            if (is_inside(k)) part.push_back(corners_[k]);
+            if (is_inside(k) != is_inside(next)) part.push_back(crossing(k, next));
+        }
+        return part;
+    }
+
+    /// Corners k and k + 2 are opaque, the others are not: joined where the opacity's saddle is opaque
+    /// [Nielson, Hamann, The Asymptotic Decider, 1991]. A saddle on the contour is where its two lines cross.
+    std::vector<GridPolygon> of_diagonal(std::size_t k) const {
+        const std::size_t b = k + 1, c = k + 2, d = (k + 3) % 4;
+        const double saddle = values_[k] * values_[c] - values_[b] * values_[d];
+        if (saddle > 0) return {around()};
+        const GridPlace ab = crossing(k, b), bc = crossing(c, b), cd = crossing(c, d), da = crossing(k, d);
+        if (saddle < 0) return {{corners_[k], ab, da}, {corners_[c], cd, bc}};
+        const GridPlace middle = corners_[k] + (ab - corners_[k]) + (da - corners_[k]);
+        return {{corners_[k], ab, middle, da}, {corners_[c], cd, middle, bc}};
+    }
+
+    std::array<GridPlace, 4> corners_;
+    const std::array<double, 4>& values_;
+};
+
+/// Whether it has an area: pieces that only touch a triangle have none.
+bool has_area(const GridPolygon& polygon) {
+    double twice = 0;
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
+        twice += cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
+    return std::fabs(twice) > kLeastArea;
 }
 
 /// The pieces of one triangle that are left.
@@ -114,7 +158,7 @@ class TriangleCut {
                     run = x + 1;
                     if (meets(x, y)) {
                         any = true;
-                        add(opaque_part(x, y, values));
+                        for (GridPolygon& part : CellParts(x, y, values).parts()) add(std::move(part));
                     }
                 }
                 values[0] = values[1];
@@ -147,8 +191,8 @@ class TriangleCut {
         return polygon;
     }
     bool meets(long long x, long long y) const {
-        return clipped({GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)})
-                   .size() > 2;
+        return has_area(
+            clipped({GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)}));
     }
     void add_run(long long from, long long to, long long y) {
         if (to > from)
@@ -156,7 +200,7 @@ class TriangleCut {
     }
     void add(GridPolygon polygon) {
         polygon = clipped(std::move(polygon));
-        if (polygon.size() > 2) pieces_.push_back(std::move(polygon));
+        if (has_area(polygon)) pieces_.push_back(std::move(polygon));
     }
 
     std::array<GridPlace, 3> corners_;
@@ -200,7 +244,9 @@ class MeshCutter {
         const Opacity opacity(material, cutoff);
         std::array<GridPlace, 3> corners;
         for (std::size_t k = 0; k < 3; ++k) corners[k] = opacity.place(uvs[t][k]);
-        if (!(std::abs(cross(corners[1] - corners[0], corners[2] - corners[0])) > 1e-12)) return keep(t);
+        if (!(std::abs(cross(corners[1] - corners[0], corners[2] - corners[0])) > 1e-12) ||
+            lacks_area(from_.points, from_.triangles[t]))
+            return keep(t);
         TriangleCut pieces(corners, opacity);
         if (pieces.is_too_fine()) {
             ++done_.too_fine;
@@ -245,7 +291,9 @@ class MeshCutter {
         }
         for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
             const std::size_t b = cut.turns() ? k + 1 : k, c = cut.turns() ? k : k + 1;
-            to_.triangles.push_back({first, first + static_cast<Id>(b), first + static_cast<Id>(c)});
+            const IdTriple corners{first, first + static_cast<Id>(b), first + static_cast<Id>(c)};
+            if (lacks_area(to_.points, corners)) continue;  // three points on one side of the piece
+            to_.triangles.push_back(corners);
             to_.material.push_back(from_.material[t]);
             if (!uvs.empty()) to_.uvs.push_back({uvs[0], uvs[b], uvs[c]});
             if (!second_uvs.empty()) to_.second_uvs.push_back({second_uvs[0], second_uvs[b], second_uvs[c]});

@@ -27,8 +27,9 @@ struct AlphaCut {
 /// Takes away what is less opaque than the cutoff of the triangles' materials. Opacity is the alpha channel
 /// of the base colour's picture, bilinear between its texels, times `alpha_factor`; its contour is followed
 /// exactly along the texels' grid and its half steps, and straight between [marching squares: Lorensen and
-/// Cline 1987, in the plane]. uvs, normals and materials go with the pieces. Materials of another alpha_mode
-/// than kMask are left alone.
+/// Cline 1987, in the plane]; where opaque corners face each other, opacity's own saddle says whether they
+/// are joined. Pieces without area are left out. uvs, normals and materials go with the pieces. Materials of
+/// another alpha_mode than kMask are left alone.
 AlphaCut cut_by_alpha(ObjectMesh& mesh, const std::vector<Material>& materials);
 
 }  // namespace trilens

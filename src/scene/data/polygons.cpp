@@ -116,15 +116,16 @@ TriangulatedMesh triangulate(const PolygonMesh& mesh) {
     return result;
 }
 
+bool lacks_area(const std::vector<Vec3>& points, const IdTriple& triangle) {
+    const Vec3 &a = points[triangle[0]], &b = points[triangle[1]], &c = points[triangle[2]];
+    const double longest = std::max({length(b - a), length(c - a), length(c - b)});
+    return !(length(cross(b - a, c - a)) > kNoArea * longest * longest);
+}
+
 std::size_t count_without_area(const ObjectMesh& mesh) {
-    std::size_t count = 0;
-    for (const IdTriple& triangle : mesh.triangles) {
-        const Vec3 &a = mesh.points[triangle[0]], &b = mesh.points[triangle[1]],
-                   &c = mesh.points[triangle[2]];
-        const double longest = std::max({length(b - a), length(c - a), length(c - b)});
-        if (!(length(cross(b - a, c - a)) > kNoArea * longest * longest)) ++count;
-    }
-    return count;
+    return static_cast<std::size_t>(
+        std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                      [&](const IdTriple& triangle) { return lacks_area(mesh.points, triangle); }));
 }
 
 // The winding number law: triangles between the corners whose oriented boundaries sum to the polygon's cover

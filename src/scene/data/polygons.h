@@ -105,7 +105,9 @@ struct TriangulatedMesh {
 /// triangle.
 TriangulatedMesh triangulate(const PolygonMesh& mesh);
 
-/// Per triangle: whether its area is zero (relative to its longest edge squared, kNoArea) .
+/// Whether the triangle's area is zero, relative to its longest edge squared (kNoArea).
+bool lacks_area(const std::vector<Vec3>& points, const IdTriple& triangle);
+/// How many of the mesh's triangles have none.
 std::size_t count_without_area(const ObjectMesh& mesh);
 inline constexpr double kNoArea = 1e-14;
 
