@@ -29,6 +29,17 @@ TexturePlace on_triangle(const CornerUvs& c, const Vec2& p, const SurfacePoint& 
     return by_parameters(c[0] + p.x * (c[1] - c[0]) + p.y * (c[2] - c[0]), c[1] - c[0], c[2] - c[0], at);
 }
 
+/// Of a triangle; all three are none where one is zero.
+using CornerTangents = std::array<Vec4, 3>;
+
+void turn_by_tangents(const CornerTangents& c, const Vec2& p, const Vec3& normal, TexturePlace& place) {
+    for (const Vec4& corner : c)
+        if (Vec3(corner) == Vec3(0)) return;
+    const Vec4 mean = (1 - p.x - p.y) * c[0] + p.x * c[1] + p.y * c[2];
+    place.along_u = Vec3(mean);
+    place.along_v = (mean.w < 0 ? -1.0 : 1.0) * cross(normal, place.along_u);
+}
+
 CornerUvs corners_of(const CageFace& of, std::span<const Vec2> polygon) {
     CornerUvs corners{};
     if (of.sub_face < 0) {
@@ -82,25 +93,34 @@ TexturePlaces places_on_primitive(const Primitive& primitive) {
 }
 
 std::optional<TexturePlaces> places_on_cage(const Surface& surface, const Cage& cage,
-                                            std::span<const Vec2> uvs) {
+                                            std::span<const Vec2> uvs, std::span<const Vec4> tangents) {
     const auto* known = dynamic_cast<const HasCageFaces*>(&surface);
     if (!known || uvs.size() != cage.face_vertex_indices.size()) return std::nullopt;
     std::vector<std::size_t> first{0};
     for (const int count : cage.face_vertex_counts)
         first.push_back(first.back() + static_cast<std::size_t>(count));
+    const bool has_tangents = tangents.size() == cage.face_vertex_indices.size();
     std::vector<CornerUvs> of_faces;
+    std::vector<CornerTangents> turns;
     for (Id face = 0; face < surface.face_count(); ++face) {
         const std::optional<CageFace> of = known->cage_face(face);
         if (!of) return std::nullopt;
         const auto polygon = static_cast<std::size_t>(of->face);
         of_faces.push_back(corners_of(*of, uvs.subspan(first[polygon], first[polygon + 1] - first[polygon])));
+        if (has_tangents && surface.domain(face) == FaceDomain::kTriangle)
+            turns.push_back(
+                {tangents[first[polygon]], tangents[first[polygon] + 1], tangents[first[polygon] + 2]});
     }
+    if (turns.size() != of_faces.size()) turns.clear();
     std::vector<FaceDomain> domains;
     for (Id face = 0; face < surface.face_count(); ++face) domains.push_back(surface.domain(face));
-    return [of_faces = std::move(of_faces), domains = std::move(domains)](Id face, const Vec2& parameters,
-                                                                          const SurfacePoint& at) {
-        return domains[face] == FaceDomain::kSquare ? on_square(of_faces[face], parameters, at)
-                                                    : on_triangle(of_faces[face], parameters, at);
+    return [of_faces = std::move(of_faces), turns = std::move(turns), domains = std::move(domains)](
+               Id face, const Vec2& parameters, const SurfacePoint& at) {
+        TexturePlace place = domains[face] == FaceDomain::kSquare
+                                 ? on_square(of_faces[face], parameters, at)
+                                 : on_triangle(of_faces[face], parameters, at);
+        if (!turns.empty()) turn_by_tangents(turns[face], parameters, at.normal, place);
+        return place;
     };
 }
 

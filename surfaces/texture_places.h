@@ -42,9 +42,12 @@ class HasCageFaces {
 };
 
 /// Bilinear between the corners of quads (linear on triangles), whose uv stand in `uvs`, one per entry of
-/// cage.face_vertex_indices; n-gons are quads between corners, edges' middles and their centre. None where
-/// the surface does not know its cage's faces. `surface` is of `cage`.
+/// cage.face_vertex_indices; n-gons are quads between corners, edges' middles and their centre. `tangents`,
+/// of triangles that are not subdivided, one per entry or none: which way u grows, interpolated between the
+/// corners, and v grows along w cross(the surface's normal, xyz), whatever the uv say; where a face's are
+/// zero at a corner, u and v grow as the uv say. None where the surface does not know its cage's faces.
+/// `surface` is of `cage`.
 std::optional<TexturePlaces> places_on_cage(const Surface& surface, const Cage& cage,
-                                            std::span<const Vec2> uvs);
+                                            std::span<const Vec2> uvs, std::span<const Vec4> tangents = {});
 
 }  // namespace trilens

@@ -102,3 +102,38 @@ TEST_CASE("facets take ripples the better the finer they are, and are divided fo
     CHECK(projected.find("reflectID.object")->ids() == traced.find("reflectID.object")->ids());
     CHECK(mean_distance(projected, traced) < 1e-5);
 }
+
+TEST_CASE(
+    "a mirror's tangents turn its normal map: those of its uv change nothing, a left hand turns v about",
+    "[laws][law]") {
+    const auto world = world_from("tangents",
+                                  std::string(R"({"version": 1,
+        "cameras": [{"name": "main", "yfov": 40, "lookAt": {"eye": [0, 0, 3], "at": [0, 0, 0]}}],
+        "materials": [{"name": "chrome", "metallicFactor": 1, "normalTexture": )") +
+                                      kRipples + R"(}],
+        "meshes": [{"name": "mirror", "role": "optic", "material": "chrome", "subdivisionScheme": "none",
+                    "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
+                    "faceVertexCounts": [4], "faceVertexIndices": [0, 1, 2, 3],
+                    "uvs": [[0, 0], [1, 0], [1, 1], [0, 1]]}]})",
+                                  1);
+    const auto normals_with = [&](const Vec4& tangent) {
+        Scene scene = world->scene;
+        if (tangent != Vec4(0)) scene.meshes[0].cage_tangents.assign(6, tangent);
+        const auto surface = make_optic_surface(scene, 0, ignore);
+        std::vector<Vec3> normals;
+        for (int k = 0; k < 40; ++k)
+            normals.push_back(surface->eval(static_cast<Id>(k % 2), {0.02 * k, 0.01 * (k % 7)}).normal);
+        return normals;
+    };
+    const std::vector<Vec3> plain = normals_with(Vec4(0)), right = normals_with({1, 0, 0, 1}),
+                            left = normals_with({1, 0, 0, -1}), turned = normals_with({0, 1, 0, 1});
+    double tilt = 0;
+    for (std::size_t k = 0; k < plain.size(); ++k) {
+        const Vec3& n = plain[k];
+        tilt = std::max(tilt, std::fabs(n.y));
+        CHECK(length(right[k] - n) < 1e-12);
+        CHECK(length(left[k] - Vec3(n.x, -n.y, n.z)) < 1e-12);
+        CHECK(length(turned[k] - Vec3(-n.y, n.x, n.z)) < 1e-12);
+    }
+    CHECK(tilt > 0.01);
+}

@@ -134,6 +134,7 @@ std::vector<Change> changes_of_shapes() {
             [](Scene& s) { s.meshes[0].object.tangents[0][2].y = 9; },
             [](Scene& s) { s.meshes[0].object.material[0] = 9; },
             [](Scene& s) { s.meshes[0].cage.normals = {Vec3(1, 0, 0)}; },
+            [](Scene& s) { s.meshes[0].cage_tangents = {Vec4(1, 0, 0, -1)}; },
             [](Scene& s) { s.meshes[0].primitive.reset(); },
             [](Scene& s) { s.meshes[0].primitive->kind = PlanePrimitive(); },
             [](Scene& s) { s.meshes[0].primitive->center.x = 1; },

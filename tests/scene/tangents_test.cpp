@@ -251,3 +251,38 @@ TEST_CASE("a glTF's tangents go with nodes, morph targets and skins", "[scene]")
     CHECK(tangent() == Vec4(1, 0, 0, 1));
     CHECK(warns(load(write_gltf(folder, parts, buffer)), "handedness is neither 1 nor -1"));
 }
+
+TEST_CASE("tangents of mirrors in a glTF go with their nodes, and a cage says that it ignores them",
+          "[scene]") {
+    const std::string folder = scratch_dir("scene_gltf_optic_tangents");
+    GltfBuffer buffer = make_buffer();
+    const auto named = [](int accessor) { return std::to_string(accessor); };
+    const std::string normals = named(buffer.add({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3)),
+                      tangents =
+                          named(buffer.add({1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1}, "VEC4", 4)),
+                      uvs = named(buffer.add({0, 1, 1, 1, 0, 0, 1, 0}, "VEC2", 2));
+    const std::string square =
+        R"({"attributes":{"POSITION":0,"NORMAL":)" + normals + R"(,"TEXCOORD_0":)" + uvs;
+    GltfParts parts;
+    parts.materials = R"([{"normalTexture":{"index":0},
+        "pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0}}])";
+    parts.more = R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,iVBO"}])";
+    parts.primitive = square + R"(,"TANGENT":)" + tangents + R"(},"indices":1,"material":0})";
+    Scene scene = load(write_gltf(folder, parts, buffer));
+    REQUIRE(scene.meshes[0].role == Role::kOptic);
+    CHECK(scene.meshes[0].cage_tangents == std::vector<Vec4>(6, Vec4(1, 0, 0, -1)));
+
+    // Mirrored along x, with a second part that has none.
+    parts.nodes = R"([{"mesh":0,"scale":[-1,1,1]}])";
+    parts.primitive += "," + square + R"(},"indices":1,"material":0})";
+    scene = load(write_gltf(folder, parts, buffer));
+    REQUIRE(scene.meshes[0].cage_tangents.size() == 12);
+    CHECK(scene.meshes[0].cage_tangents[0] == Vec4(-1, 0, 0, 1));
+    CHECK(scene.meshes[0].cage_tangents[6] == Vec4(0));
+    CHECK(!warns(scene, "the tangents of its points are ignored"));
+
+    parts.nodes = R"([{"mesh":0,"extras":{"trilens":{"subdivision":"loop"}}}])";
+    scene = load(write_gltf(folder, parts, buffer));
+    CHECK(scene.meshes[0].cage_tangents.empty());
+    CHECK(warns(scene, "the tangents of its points are ignored: it is subdivided"));
+}

@@ -122,3 +122,35 @@ TEST_CASE("a normal map turns a surface's normal along u and v, and nothing else
         CHECK(length(hit->point.normal - turned.normal) < 1e-9);
     }
 }
+
+TEST_CASE("triangles' own tangents say where u and v grow, whatever the uv say", "[surfaces]") {
+    Draw draw(9);
+    Cage cage;
+    cage.scheme = SubdivisionScheme::kUnsubdivided;
+    cage.points = {{0, 0, 0}, {1, 0, 0.1}, {1.1, 1, 0.3}, {0, 1, 0}};
+    cage.face_vertex_counts = {3, 3};
+    cage.face_vertex_indices = {0, 1, 2, 0, 2, 3};
+    const std::vector<Vec2> uvs{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+    const auto surface = make_limit_surface(cage, "two", {});
+    const auto by_uv = places_on_cage(*surface, cage, uvs);
+    REQUIRE(by_uv);
+    for (const double hand : {1.0, -1.0}) {
+        std::vector<Vec4> tangents;
+        for (std::size_t k = 0; k < 5; ++k) tangents.emplace_back(draw.unit(), hand);
+        tangents.emplace_back(0);  // so that the second triangle has none
+        const auto places = places_on_cage(*surface, cage, uvs, tangents);
+        REQUIRE(places);
+        for (int trial = 0; trial < 20; ++trial) {
+            const Vec2 p = 0.5 * Vec2(draw.uniform(0, 1), draw.uniform(0, 1));
+            const SurfacePoint at = surface->eval(0, p);
+            const TexturePlace place = (*places)(0, p, at);
+            const Vec3 expected = Vec3((1 - p.x - p.y) * tangents[0] + p.x * tangents[1] + p.y * tangents[2]);
+            CHECK(length(place.along_u - expected) < 1e-12);
+            CHECK(length(place.along_v - hand * cross(at.normal, expected)) < 1e-12);
+            CHECK(place.uv == (*by_uv)(0, p, at).uv);
+            const SurfacePoint other = surface->eval(1, p);
+            CHECK((*places)(1, p, other).along_u == (*by_uv)(1, p, other).along_u);
+            CHECK((*places)(1, p, other).along_v == (*by_uv)(1, p, other).along_v);
+        }
+    }
+}

@@ -147,9 +147,9 @@ std::shared_ptr<const Surface> make_optic_surface(const Scene& scene, Id id, con
     const Mesh& mesh = scene.meshes[id];
     std::unique_ptr<Surface> surface = make_plain_surface(mesh, warn);
     if (mesh.maps_normals) {
-        std::optional<TexturePlaces> places = mesh.primitive
-                                                  ? places_on_primitive(*mesh.primitive)
-                                                  : places_on_cage(*surface, mesh.cage, mesh.cage_uvs);
+        std::optional<TexturePlaces> places =
+            mesh.primitive ? places_on_primitive(*mesh.primitive)
+                           : places_on_cage(*surface, mesh.cage, mesh.cage_uvs, mesh.cage_tangents);
         if (places)
             surface = with_normal_map(std::move(surface), std::move(*places),
                                       normals_of_map(scene.materials[mesh.material]));

@@ -195,6 +195,10 @@ void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {
     for (const RationalPatch& one : mesh.patches) patch(one, place + "/patches");
     require(mesh.cage_uvs.empty() || mesh.cage_uvs.size() == mesh.cage.face_vertex_indices.size(),
             place + "/uvs", "needs one entry per corner of a face, or none");
+    require(mesh.cage_tangents.empty() || mesh.cage_tangents.size() == mesh.cage.face_vertex_indices.size(),
+            place + "/tangents", "needs one entry per corner of a face, or none");
+    for (const Vec4& tangent : mesh.cage_tangents)
+        require(is_finite(Vec3(tangent)) && is_finite(tangent.w), place + "/tangents", "is not finite");
     require(!mesh.maps_normals || scene_.materials[mesh.material].normal_texture.picture, place,
             "maps normals of a picture that its material does not have");
     require(

@@ -120,6 +120,7 @@ struct Mesh {
     std::optional<Primitive> primitive;
     Cage cage;
     std::vector<Vec2> cage_uvs;          // where normals are mapped: per entry of cage.face_vertex_indices
+    std::vector<Vec4> cage_tangents;     // likewise, or empty: as ObjectMesh has them; zero: by cage_uvs
     bool maps_normals = false;           // optic: its material's normal map turns its normals
     bool of_patches = false;             // face_count patches
     std::vector<RationalPatch> patches;  // of an optic

@@ -213,8 +213,8 @@ void add(const Cage& cage, Digest& digest) {
 
 void add(const Mesh& mesh, Digest& digest) {
     [[maybe_unused]] const auto& [name, role, material, resolution, grid, rays, layered, face_count, normals,
-                                  priority, object, primitive, cage, cage_uvs, maps_normals, of_patches,
-                                  patches, terrain] = mesh;
+                                  priority, object, primitive, cage, cage_uvs, cage_tangents, maps_normals,
+                                  of_patches, patches, terrain] = mesh;
     digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
@@ -227,6 +227,7 @@ void add(const Mesh& mesh, Digest& digest) {
     if (primitive) add(*primitive, digest);
     add(cage, digest);
     digest.add_all(cage_uvs, maps_normals);  // a terrain is its triangles
+    if (!cage_tangents.empty()) digest.add(cage_tangents);
     for (const RationalPatch& patch : patches) {
         const auto& [degree_u, degree_v, origin, controls] = patch;
         digest.add_all(degree_u, degree_v, origin, controls);

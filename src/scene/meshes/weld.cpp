@@ -30,6 +30,7 @@ class FaceCopier {
             if (!from_.second_uvs.empty()) to_.second_uvs.push_back(from_.second_uvs[corner]);
             if (!from_.colors.empty()) to_.colors.push_back(from_.colors[corner]);
             if (!from_.normals.empty()) to_.normals.push_back(from_.normals[corner]);
+            if (!from_.tangents.empty()) to_.tangents.push_back(from_.tangents[corner]);
         }
     }
 

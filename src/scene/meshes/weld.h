@@ -10,7 +10,7 @@ namespace trilens {
 void weld_points(PolygonMesh& mesh);
 
 /// Joins each two triangles that follow each other, share an edge and lie nearly in one plane (kNearlyFlat)
-/// to the quad that a program cut in two; the rest stays. uvs and normals go with the corners.
+/// to the quad that a program cut in two; the rest stays. What corners have goes with them.
 void join_quads(PolygonMesh& mesh);
 inline constexpr double kNearlyFlat = 0.8;  // cosine of the angle between the normals
 

@@ -91,7 +91,7 @@ void check_far_points(const Node& node, const Cage& cage) {
     node["file"].fail("point " + std::to_string(*far + 1) + " of the file " + message);
 }
 
-/// The uv that the material's normal map lies by, where it has one.
+/// The uv and tangents that the material's normal map lies by, where it has one. The cage has its scheme.
 void read_optic_uvs(const Node& node, const PolygonMesh& polygons, Mesh& mesh, Reading& reading) {
     const PlacedTexture& map = reading.scene.materials[mesh.material].normal_texture;
     if (!map.picture) return;
@@ -99,6 +99,11 @@ void read_optic_uvs(const Node& node, const PolygonMesh& polygons, Mesh& mesh, R
     mesh.cage_uvs = is_second ? polygons.second_uvs : polygons.uvs;
     mesh.maps_normals = !mesh.cage_uvs.empty();
     if (!mesh.maps_normals) reading.warn(node.place, "has no uv: the normal map of its material is ignored");
+    if (!mesh.maps_normals || polygons.tangents.empty()) return;
+    if (polygons.cage.scheme == SubdivisionScheme::kUnsubdivided)
+        mesh.cage_tangents = polygons.tangents;
+    else
+        reading.warn(node.place, "the tangents of its points are ignored: it is subdivided");
 }
 
 /// Of a lens, checked: sides that go on beyond what their terms were made for.
