@@ -76,7 +76,7 @@ TEST_CASE("optics of a glTF: by name, by extras, by material", "[scene]") {
     parts.materials =
         R"([{"name":"pane","pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0},"extensions":{
         "KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33},
-        "KHR_materials_volume":{"attenuationColor":[0.5,1,1],"attenuationDistance":2}}}])";
+        "KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.5,1,1],"attenuationDistance":2}}}])";
     scene = load(write_gltf(folder, parts));
     CHECK(scene.meshes[0].role == Role::kOptic);
     CHECK(scene.materials[0].transmission_factor == 1);

@@ -36,6 +36,43 @@ TEST_CASE("COLOR_0 goes with the corners of a glTF, three or four wide, cut to 0
     CHECK(polygons_of_gltf(read_gltf(other), other, nullptr).colors[1] == Vec4(0, 1, 0, 0));
 }
 
+TEST_CASE("morph targets of a glTF move colours and both sets of uv", "[scene]") {
+    const std::string folder = scratch_dir("scene_gltf_morphed_colours");
+    GltfBuffer buffer = make_buffer();
+    const auto add = [&](const std::vector<double>& numbers, int width) {
+        return std::to_string(buffer.add(numbers, "VEC" + std::to_string(width), width));
+    };
+    const std::string four = add({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, 4),
+                      steps = add({-1, 1, 0, -1, 1, 0, -1, 1, 0, -1, 9, 0}, 3),
+                      uvs = add({0, 0, 1, 0, 0, 1, 1, 1}, 2),
+                      moves = add({0.5, 0.25, 0.5, 0.25, 0.5, 0.25, 0.5, 0.25}, 2);
+    const std::string base = R"({"attributes":{"POSITION":0,"TEXCOORD_0":)" + uvs;
+    const std::string target = R"(},"indices":1,"targets":[{"TEXCOORD_0":)" + moves + R"(,"TEXCOORD_1":)" +
+                               moves + R"(,"COLOR_0":)" + steps + "}]}";
+    GltfParts parts;
+    parts.nodes = R"([{"mesh":0,"weights":[0.5]}])";
+    parts.primitive = base + R"(,"TEXCOORD_1":)" + uvs + R"(,"COLOR_0":)" + four + target;
+    const std::string file = write_gltf(folder, parts, buffer);
+    const GltfModel model = read_gltf(file);
+    CHECK(model.warnings.empty());
+    const PolygonMesh mesh = polygons_of_gltf(model, file, nullptr);
+    REQUIRE(mesh.colors.size() == 6);
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto point = static_cast<std::size_t>(mesh.cage.face_vertex_indices[k]);
+        CHECK(mesh.colors[k] == Vec4(0.5, point == 3 ? 1 : 0.5, 0, 1));
+        const Vec2 uv(static_cast<double>(point % 2) + 0.25, 1 - static_cast<double>(point / 2) - 0.125);
+        CHECK(mesh.uvs[k] == uv);
+        CHECK(mesh.second_uvs[k] == uv);
+    }
+
+    parts.primitive = base + target;
+    const std::string bare = write_gltf(folder, parts, buffer);
+    const GltfModel lacking = read_gltf(bare);
+    REQUIRE(lacking.warnings.size() == 2);
+    CHECK(lacking.warnings[0] == "a morph target's COLOR_0 is ignored: its primitive has none");
+    CHECK(polygons_of_gltf(lacking, bare, nullptr).colors.empty());
+}
+
 TEST_CASE("a point of an OBJ may have a colour as screens have it", "[scene]") {
     const ObjFile obj = parse_obj("v 0 0 0 1 0.5 0\nv 1 0 0\nv 1 1 0 0 0 0.04\nf 1 2 3\n", "coloured.obj");
     REQUIRE(obj.mesh.colors.size() == 3);

@@ -20,8 +20,9 @@ inline constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 struct GltfMaterial {
     Material material;  // without its texture
     int image = -1;     // base colour picture: index into GltfModel::images, or -1
-    /// As a scene's material, with every key that glTF has for it, those too that scenes do not know; its
-    /// pictures are {"image": index into GltfModel::images, "wrapS", "wrapT", "texCoord", "transform"}.
+    /// As a scene's material, with every key that glTF has for it, those too that scenes do not know, and
+    /// keys that say what else scenes lack; its pictures are {"image": index into GltfModel::images, "wrapS",
+    /// "wrapT", "texCoord", "transform"}, and such keys.
     Json written;
     Json extras;  // null: none
 };
@@ -37,6 +38,8 @@ struct GltfImage {
 /// How far a morph target moves a primitive's vertices; empty: not at all.
 struct GltfMorphTarget {
     std::vector<Vec3> positions, normals, tangents;
+    std::vector<Vec2> uvs, second_uvs;
+    std::vector<Vec4> colors;
 };
 
 /// One primitive of a mesh with triangles, attributes per vertex.
@@ -162,7 +165,7 @@ struct GltfPart {
     GltfMoment moment;
 };
 
-/// The mesh's points, normals and tangents as morph targets and skin have them, in the world.
+/// The mesh's points, normals, tangents, uvs and colours as morph targets and skin have them, in the world.
 PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, const TextureReader* textures,
                              const GltfPart& part);
 

@@ -150,10 +150,12 @@ class MaterialReader {
                 number(ior, "ior", 1.5, kLargestCoordinate, at("extensions/KHR_materials_ior"));
             if (value != 0 && !(value >= 1 && value <= 10))
                 source_.fail(at("extensions/KHR_materials_ior/ior"), "must be 0, or lie in 1..10");
-            if (value == 0)
+            if (value == 0) {
                 source_.warn_of_material("an ior of 0 (all reflects) is taken for 1.5");
-            else
+                out_.written["an ior of 0 (all reflects)"] = true;
+            } else {
                 out_.written["ior"] = value;
+            }
         }
         if (!transmission.is_null()) {
             const std::string place = at("extensions/KHR_materials_transmission");
@@ -165,12 +167,16 @@ class MaterialReader {
                                                 at("extensions/KHR_materials_dispersion"));
         if (!volume.is_null()) {
             const std::string place = at("extensions/KHR_materials_volume");
+            const double thickness = number(volume, "thicknessFactor", 0, kLargestCoordinate, place);
             const Vec3 tint = color(volume, "attenuationColor", Vec3(1), place);
             for (int k = 0; k < 3; ++k)
                 if (!(tint[k] <= 1)) source_.fail(place + "/attenuationColor", "is brighter than 1");
-            out_.written["volume"] = {
-                {"attenuationColor", {tint.x, tint.y, tint.z}},
-                {"attenuationDistance", number(volume, "attenuationDistance", 0, kLargestCoordinate, place)}};
+            const double distance = number(volume, "attenuationDistance", 0, kLargestCoordinate, place);
+            if (thickness > 0)
+                out_.written["volume"] = {{"attenuationColor", {tint.x, tint.y, tint.z}},
+                                          {"attenuationDistance", distance}};
+            else if (out_.written.value("transmissionFactor", 0.0) > 0)
+                out_.written["a thin wall (a volume's thicknessFactor 0)"] = true;
         }
     }
 
@@ -234,6 +240,10 @@ class MaterialReader {
         };
         sampler.wrap_s = wrap(given.wrapS);
         sampler.wrap_t = wrap(given.wrapT);
+        if (given.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) {
+            source_.warn_of_material("the magFilter NEAREST of samplers is taken for LINEAR");
+            written["magFilter NEAREST"] = true;
+        }
         if (sampler.wrap_s != Wrap::kRepeat) written["wrapS"] = name_of(sampler.wrap_s);
         if (sampler.wrap_t != Wrap::kRepeat) written["wrapT"] = name_of(sampler.wrap_t);
     }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "json/json.h"
 #include "scene/formats/gltf.h"
@@ -28,6 +29,8 @@ struct GltfSource {
     void warn_of_material(const std::string& message) { material_warned.insert(message); }
     /// The index, which is -1 (none) or below `count`. Throws InputError.
     int checked(int index, std::size_t count, const std::string& place, const char* what) const;
+    /// Of morph targets. Throws InputError where one is beyond the range of coordinates.
+    void check_weights(const std::vector<double>& weights, const std::string& place) const;
     /// A relative URI as a path from where the program runs; empty for a data URI and for none.
     std::string resolve(const std::string& uri) const;
 };
@@ -42,6 +45,7 @@ double gltf_number(const GltfSource& source, const Json& number, double low, dou
 /// Warns of extensions that are not known. Throws InputError where the file requires one.
 void check_gltf_extensions(GltfSource& source);
 
+void read_gltf_meshes(GltfSource& source, GltfModel& into);
 void read_gltf_materials(GltfSource& source, GltfModel& into);
 /// Cameras and KHR_lights_punctual.
 void read_gltf_views(GltfSource& source, GltfModel& into);

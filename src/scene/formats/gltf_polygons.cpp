@@ -61,20 +61,31 @@ class Materials {
 struct Vertices {
     std::vector<Vec3> positions, normals;
     std::vector<Vec4> tangents;
+    std::vector<Vec2> uvs, second_uvs;
+    std::vector<Vec4> colors;
 };
+
+/// What `values` has none of stays.
+template <typename T>
+void move_by(double weight, const std::vector<T>& steps, std::vector<T>& values) {
+    for (std::size_t i = 0; i < steps.size() && i < values.size(); ++i) values[i] += weight * steps[i];
+}
 
 /// Moved by morph targets.
 void morph(const GltfPrimitive& primitive, const std::vector<double>& weights, Vertices& vertices) {
-    auto& [positions, normals, tangents] = vertices;
     for (std::size_t k = 0; k < primitive.targets.size() && k < weights.size(); ++k) {
+        if (weights[k] == 0) continue;
         const GltfMorphTarget& target = primitive.targets[k];
-        for (std::size_t i = 0; weights[k] != 0 && i < target.positions.size(); ++i)
-            positions[i] += weights[k] * target.positions[i];
-        for (std::size_t i = 0; weights[k] != 0 && i < target.normals.size() && i < normals.size(); ++i)
-            normals[i] += weights[k] * target.normals[i];
-        for (std::size_t i = 0; weights[k] != 0 && i < target.tangents.size() && i < tangents.size(); ++i)
-            tangents[i] += Vec4(weights[k] * target.tangents[i], 0);
+        move_by(weights[k], target.positions, vertices.positions);
+        move_by(weights[k], target.normals, vertices.normals);
+        for (std::size_t i = 0; i < target.tangents.size() && i < vertices.tangents.size(); ++i)
+            vertices.tangents[i] += Vec4(weights[k] * target.tangents[i], 0);
+        move_by(weights[k], target.uvs, vertices.uvs);
+        move_by(weights[k], target.second_uvs, vertices.second_uvs);
+        move_by(weights[k], target.colors, vertices.colors);
     }
+    for (Vec4& color : vertices.colors)
+        color = glm::clamp(color, Vec4(0), Vec4(1));  // glTF 2.0, section 3.7.2.2
 }
 
 /// Linear blend skinning: per joint what carries the mesh's points into the world.
@@ -108,9 +119,9 @@ class Appender {
         const auto base = static_cast<int>(mesh_.cage.points.size());
         mesh_.cage.points.insert(mesh_.cage.points.end(), now_.positions.begin(), now_.positions.end());
         // What has no second set takes its first for it.
-        const bool has_second = !primitive.second_uvs.empty() || !mesh_.second_uvs.empty();
+        const bool has_second = !now_.second_uvs.empty() || !mesh_.second_uvs.empty();
         if (has_second && mesh_.second_uvs.empty()) mesh_.second_uvs = mesh_.uvs;
-        const bool has_colors = !primitive.colors.empty() || !mesh_.colors.empty();
+        const bool has_colors = !now_.colors.empty() || !mesh_.colors.empty();
         if (has_colors) mesh_.colors.resize(mesh_.cage.face_vertex_indices.size(), Vec4(1));
         const bool has_tangents = !now_.tangents.empty() || !mesh_.tangents.empty();
         if (has_tangents) mesh_.tangents.resize(mesh_.cage.face_vertex_indices.size(), Vec4(0));
@@ -121,14 +132,13 @@ class Appender {
             mesh_.face_material.push_back(material);
             for (const Id vertex : corners) {
                 mesh_.cage.face_vertex_indices.push_back(base + static_cast<int>(vertex));
-                const Vec2 uv = primitive.uvs.empty() ? Vec2(0, 1) : primitive.uvs[vertex];
+                const Vec2 uv = now_.uvs.empty() ? Vec2(0, 1) : now_.uvs[vertex];
                 mesh_.uvs.push_back({uv.x, 1 - uv.y});
                 if (has_second) {
-                    const Vec2 second = primitive.second_uvs.empty() ? uv : primitive.second_uvs[vertex];
+                    const Vec2 second = now_.second_uvs.empty() ? uv : now_.second_uvs[vertex];
                     mesh_.second_uvs.push_back({second.x, 1 - second.y});
                 }
-                if (has_colors)
-                    mesh_.colors.push_back(primitive.colors.empty() ? Vec4(1) : primitive.colors[vertex]);
+                if (has_colors) mesh_.colors.push_back(now_.colors.empty() ? Vec4(1) : now_.colors[vertex]);
                 mesh_.normals.push_back(now_.normals.empty() ? Vec3(0) : now_.normals[vertex]);
                 if (has_tangents)
                     mesh_.tangents.push_back(now_.tangents.empty() ? Vec4(0) : now_.tangents[vertex]);
@@ -139,7 +149,8 @@ class Appender {
   private:
     void place_vertices(int node, const GltfPrimitive& primitive) {
         const auto index = static_cast<std::size_t>(node);
-        now_ = {primitive.positions, primitive.normals, primitive.tangents};
+        now_ = {primitive.positions, primitive.normals,    primitive.tangents,
+                primitive.uvs,       primitive.second_uvs, primitive.colors};
         morph(primitive, pose_.weights[index], now_);
         const int skin = model_.nodes[index].skin;
         if (skin >= 0 && primitive.influences > 0)
@@ -159,7 +170,8 @@ class Appender {
             of_joint.push_back(compose(pose_.world_from_node[static_cast<std::size_t>(skin.joints[j])],
                                        skin.joint_from_mesh[j]));
         mirrored_ = !of_joint.empty() && mirrors(of_joint.front());
-        auto& [positions, normals, tangents] = now_;
+        std::vector<Vec3>&positions = now_.positions, &normals = now_.normals;
+        std::vector<Vec4>& tangents = now_.tangents;
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const Transform at = blended(primitive, i, of_joint);
             positions[i] = map_point(at, positions[i]);

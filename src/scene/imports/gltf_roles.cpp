@@ -13,8 +13,7 @@ namespace {
 /// The material of a perfect mirror, or of clear glass.
 bool is_optical(const Json& material) {
     if (material.value("roughnessFactor", 0.0) != 0 || material.contains("metallicRoughnessTexture") ||
-        material.contains("transmissionTexture") || material.value("unlit", false) ||
-        material.contains("alphaMode"))
+        material.contains("transmissionTexture") || material.value("unlit", false))
         return false;
     const double metallic = material.value("metallicFactor", 0.0),
                  transmission = material.value("transmissionFactor", 0.0);
@@ -46,6 +45,15 @@ Json hints_of(const Json& extras, const std::string& file, const std::string& pl
 
 }  // namespace
 
+bool is_open(const Json& material) {
+    if (!material.contains("alphaMode")) return false;
+    const bool has_picture = material.contains("baseColorTexture");
+    const double factor = material.value("alphaFactor", 1.0);
+    if (material.at("alphaMode") == "blend") return has_picture || factor < 1;
+    const double cutoff = material.value("alphaCutoff", 0.5);
+    return cutoff > 0 && (has_picture || factor < cutoff);
+}
+
 GltfRoles::GltfRoles(const GltfModel& model, const std::string& file,
                      const std::vector<std::string>& patterns)
     : model_(model), file_(file), patterns_(patterns), matched_(patterns.size(), 0) {}
@@ -64,7 +72,9 @@ GltfRole GltfRoles::role_of(const GltfUse& use, const std::string& material_name
     names_.push_back(use.name);
     const Json* material =
         use.material < 0 ? nullptr : &model_.materials[static_cast<std::size_t>(use.material)].written;
-    role.is_optic = material && is_optical(*material);
+    const bool is_clear = material && is_optical(*material),
+               is_mirror = is_clear && material->value("metallicFactor", 0.0) == 1;
+    role.is_optic = is_clear && !is_open(*material);
     for (std::size_t k = 0; k < patterns_.size(); ++k)
         for (const std::string& name : {use.name, node_name(use.node), mesh_name, material_name})
             if (!name.empty() && fnmatch(patterns_[k].c_str(), name.c_str(), 0) == 0)
@@ -83,6 +93,7 @@ GltfRole GltfRoles::role_of(const GltfUse& use, const std::string& material_name
     } else if (role.changes.contains("subdivisionScheme")) {
         role.is_optic = true;  // only optics are subdivided
     }
+    role.is_open_mirror = is_mirror && !role.is_optic && !role.changes.contains("role");
     // Cages have few faces, on which facets lie well.
     if (role.changes.value("subdivisionScheme", Json("none")) != "none") {
         Json usual{{"grid", "surface"}, {"resolution", 8}};

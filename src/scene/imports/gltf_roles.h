@@ -11,6 +11,11 @@
 
 namespace trilens {
 
+/// Whether a material (GltfMaterial::written) may let through what lies behind: one that blends or is a mask,
+/// and whose alpha is below 1, or the mask's cutoff; a picture of its base colour counts as one with such
+/// alpha.
+bool is_open(const Json& material);
+
 /// One mesh of the scene: those primitives of a node that have one material.
 struct GltfUse {
     int node = -1, material = -1;  // material: -1 for none
@@ -20,6 +25,7 @@ struct GltfUse {
 /// `changes`: what extras.trilens says beside, as keys of a scene's mesh.
 struct GltfRole {
     bool is_optic = false;
+    bool is_open_mirror = false;  // an object for that alone that its material, a perfect mirror, is open
     Json changes = Json::object();
 };
 

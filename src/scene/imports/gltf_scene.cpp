@@ -12,6 +12,8 @@
 #include "base/util/error.h"
 #include "base/util/names.h"
 #include "scene/imports/gltf_roles.h"
+#include "scene/imports/gltf_scene_materials.h"
+#include "scene/imports/gltf_words.h"
 
 namespace trilens {
 namespace {
@@ -21,37 +23,6 @@ constexpr double kFramesPerSecond = 24;
 Json array_of(const Vec3& v) {
     return {v.x, v.y, v.z};
 }
-
-/// Distinct names: the second "a" becomes "a.2".
-class DistinctNames {
-  public:
-    std::string take(const std::string& wanted) {
-        std::string name = wanted;
-        for (int k = 2; !names_.insert(name).second; ++k) name = wanted + "." + std::to_string(k);
-        return name;
-    }
-
-  private:
-    std::set<std::string> names_;
-};
-
-/// The keys that scenes lack, told once each.
-class LeftOut {
-  public:
-    void note(const std::string& what, const std::string& whose) {
-        auto& [first, count] = found_[what];
-        if (count++ == 0) first = whose;
-    }
-    void tell(std::vector<std::string>& warnings) const {
-        for (const auto& [what, who] : found_)
-            warnings.push_back(what + " is not drawn (of '" + who.first + "'" +
-                               (who.second > 1 ? " and " + std::to_string(who.second - 1) + " more" : "") +
-                               ")");
-    }
-
-  private:
-    std::map<std::string, std::pair<std::string, int>> found_;
-};
 
 class SceneWriter {
   public:
@@ -71,6 +42,8 @@ class SceneWriter {
             throw UsageError("--optic " + pattern + ": no mesh of " + params_.file + " has such a name" +
                              suggestion(pattern, roles_.names()));
         if (!tracks_.empty()) out_.scene["animation"] = {{"fps", kFramesPerSecond}, {"tracks", tracks_}};
+        out_.scene["materials"] = materials_.written();
+        out_.warnings = materials_.warnings();
         left_out_.tell(out_.warnings);
         return std::move(out_);
     }
@@ -108,16 +81,18 @@ class SceneWriter {
         for (const auto& [material, parts] : groups) {
             const std::string own = roles_.node_name(node);
             const std::string name =
-                mesh_names_.take(groups.size() == 1 ? own : own + "." + material_name(material));
+                mesh_names_.take(groups.size() == 1 ? own : own + "." + materials_.name_of(material));
             write_mesh({node, material, name}, parts, parts.size() == mesh.primitives.size());
         }
     }
 
     void write_mesh(const GltfUse& use, const std::vector<int>& parts, bool is_all) {
         Json mesh{{"name", use.name}};
-        const GltfRole role = roles_.role_of(use, material_name(use.material));
+        const GltfRole role = roles_.role_of(use, materials_.name_of(use.material));
         mesh["role"] = role.is_optic ? "optic" : "object";
-        mesh["material"] = write_material(use.material, role.is_optic);
+        mesh["material"] = materials_.write(use.material, role.is_optic);
+        if (role.is_open_mirror)
+            left_out_.note("what a mirror with alphaMode reflects", materials_.name_of(use.material));
         mesh["file"] = params_.written;
         mesh["node"] = use.node;
         if (!is_all) mesh["parts"] = parts;
@@ -144,96 +119,6 @@ class SceneWriter {
                              .triangles.size();
         const double facets = kUsualFacets / static_cast<double>(std::max<std::size_t>(triangles, 1));
         return std::clamp(static_cast<int>(std::lround(std::sqrt(facets))), 1, 32);
-    }
-
-    std::string material_name(int material) const {
-        return material < 0 ? "default" : model_.materials[static_cast<std::size_t>(material)].material.name;
-    }
-
-    /// Writes the material once as it is, and once as an optic needs it where that is another. Returns its
-    /// name.
-    std::string write_material(int index, bool of_optic) {
-        Json material{{"name", "default"}, {"metallicFactor", 1}, {"roughnessFactor", 1}};
-        if (index >= 0) material = model_.materials[static_cast<std::size_t>(index)].written;
-        if (of_optic && make_optical(material)) material["name"] = material_name(index) + " (optic)";
-        const std::pair<int, std::string> key{index, material.at("name").get<std::string>()};
-        const auto known = material_names_.find(key);
-        if (known != material_names_.end()) return known->second;
-        // Those of the file have distinct names already, but not from those made here.
-        const std::string name = distinct_materials_.take(key.second);
-        material["name"] = name;
-        // An object's roughness of 0 is a glTF's polished surface, but a scene's matt one.
-        if (!of_optic && !material.contains("unlit") && material.value("roughnessFactor", 1.0) == 0)
-            material["brdf"] = name_of(Brdf::kMetallicRoughness);
-        finish_material(material);
-        out_.scene["materials"].push_back(std::move(material));
-        return material_names_[key] = name;
-    }
-
-    /// An optic is a mirror or clear glass, rough to 0.3 at most, else perfect. Returns whether the material
-    /// was not.
-    bool make_optical(Json& material) {
-        const std::string name = material.at("name").get<std::string>();
-        const bool glass = material.value("transmissionFactor", 0.0) > 0;
-        const Json before = material;
-        material.erase("unlit");
-        material["metallicFactor"] = glass ? 0 : 1;
-        if (glass) material["transmissionFactor"] = 1;
-        const double rough = before.value("roughnessFactor", 0.0);
-        if (rough > kMostRoughness) material["roughnessFactor"] = 0;
-        for (const char* key :
-             {"baseColorTexture", "metallicRoughnessTexture", "transmissionTexture", "occlusionTexture"})
-            if (material.erase(key) > 0) left_out_.note(std::string(key) + " of an optic", name);
-        for (const char* key : {"alphaMode", "alphaFactor", "alphaCutoff", "doubleSided"})
-            material.erase(key);
-        if (material == before) return false;
-        const double metallic = before.value("metallicFactor", 0.0);
-        if ((!glass && metallic != 1) || (glass && before.value("transmissionFactor", 0.0) != 1) ||
-            rough > kMostRoughness)
-            out_.warnings.push_back("material '" + name + "' is drawn as a perfect " +
-                                    (glass ? "glass" : "mirror") + " on an optic");
-        return true;
-    }
-
-    /// Leaves what scenes know, and names its pictures as they do.
-    void finish_material(Json& material) {
-        const std::string name = material.at("name").get<std::string>();
-        const Json before = material;
-        for (const auto& [key, value] : before.items()) {
-            if (params_.known.material.count(key) == 0) {
-                left_out_.note(key, name);
-                material.erase(key);
-            } else if (material.at(key).is_object() && material.at(key).contains("image")) {
-                material[key] = finish_texture(material.at(key), key, name);
-            }
-        }
-    }
-
-    Json finish_texture(Json texture, const std::string& key, const std::string& material) {
-        const GltfImage& image = model_.images[texture.at("image").get<std::size_t>()];
-        check_picture(image, texture.at("image").get<std::size_t>());
-        Json written{{"file", params_.written}};
-        if (!image.file.empty()) {
-            written["file"] = (std::filesystem::path(params_.written).parent_path() / image.uri).string();
-            texture.erase("image");
-        }
-        written.update(texture);
-        const Json before = written;
-        for (const auto& [part, value] : before.items()) {
-            if (params_.known.texture.count(part) > 0) continue;
-            if (value != Json(1.0)) left_out_.note(key + "/" + part, material);
-            written.erase(part);
-        }
-        return written.size() == 1 ? written.at("file") : written;
-    }
-
-    void check_picture(const GltfImage& image, std::size_t index) const {
-        const std::string place = "/images/" + std::to_string(index);
-        std::error_code ignored;
-        if (!image.file.empty() && !std::filesystem::exists(image.file, ignored))
-            throw InputError(params_.file, place + "/uri", "the picture '" + image.file + "' does not exist");
-        if (image.file.empty() && image.encoded.empty())
-            throw InputError(params_.file, place, "the picture holds no data");
     }
 
     // Cameras and lights: all that knows of their fields.
@@ -375,15 +260,11 @@ class SceneWriter {
     GltfPose pose_;
     std::vector<int> nodes_;
     Box bounds_;
-    GltfScene out_{{{"cameras", Json::array()},
-                    {"materials", Json::array()},
-                    {"meshes", Json::array()},
-                    {"lights", Json::array()}},
-                   {}};
+    GltfScene out_{{{"cameras", Json::array()}, {"meshes", Json::array()}, {"lights", Json::array()}}, {}};
     Json tracks_ = Json::array();
-    DistinctNames mesh_names_, camera_names_, light_names_, distinct_materials_;
-    std::map<std::pair<int, std::string>, std::string> material_names_;
+    DistinctNames mesh_names_, camera_names_, light_names_;
     LeftOut left_out_;
+    GltfSceneMaterials materials_{model_, params_, left_out_};
 };
 
 }  // namespace

@@ -50,6 +50,9 @@ void warn_of_idle(const std::string& place, const Material& material, Reading& r
     add(material.occlusion_texture.picture != nullptr, "occlusionTexture");
     add(material.emissive_factor != Vec3(0), "emissiveFactor");
     add(material.alpha_mode != AlphaMode::kOpaque, "alphaMode");
+    const bool is_glass = material.transmission_factor == 1;
+    add(is_glass && material.specular_factor != 1, "specularFactor");
+    add(is_glass && material.specular_color_factor != Vec3(1), "specularColorFactor");
     if (!idle.empty())
         reading.warn(place, "the material '" + material.name + "' of an optic: not drawn there: " + idle);
 }
