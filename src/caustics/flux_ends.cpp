@@ -38,13 +38,22 @@ class BeamFluxEnds {
     FluxEnds sum() {
         const LightBeam& beam = beams_.beams[beam_];
         const BeamEnds end = corners_of(beams_, beam).end;
+        const bool is_in_air = beams_.histories[beam.history].medium == kNone;
         const EndKind kind = kind_of(*end[0]);
-        if (kind_of(*end[1]) == kind && kind_of(*end[2]) == kind) {
+        bool are_alike = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            are_alike = are_alike && kind_of(*end[k]) == kind;
+            if (!is_in_air || !are_alike) continue;
+            BeamEnd middle = *refined_.side_middles(beam_)[k];
+            refined_.look_ahead(beam_, middle);
+            are_alike = kind_of(middle) == kind;
+        }
+        if (are_alike) {
             // Exact for quadratic light: at a rim, where Fresnel's weights are steep, corners say too much.
             for (const BeamEnd* middle : refined_.side_middles(beam_))
                 add_to(sum_, kind, beam.measure / 3 * middle->light);
         } else {
-            add(end, beams_.histories[beam.history].medium == kNone ? 0 : kMostEndHalvings);
+            add(end, is_in_air ? 0 : kMostEndHalvings);
         }
         return sum_;
     }

@@ -11,8 +11,9 @@ struct FluxEnds {
     Vec3 away{0};        // what goes away from the scene
 };
 
-/// `refined`: of these beams. A beam whose rays do not all end alike is divided by exact rays; one in a
-/// body of glass is shared out by its corners.
+/// `refined`: of these beams. A beam whose corners and middles of sides do not all end alike is divided by
+/// exact rays; one in a body of glass is shared out by its corners. What ends on an object that is smaller
+/// than a beam, and at none of these places, counts as the rest of the beam.
 FluxEnds flux_ends(const RefinedBeams& refined, const Beams& beams);
 
 }  // namespace trilens
