@@ -145,7 +145,7 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const FootprintPart&
         light += here.weights[k] * piece.fallen.share[c] * piece.fallen.light[c];
         weights += here.weights[k] * piece.fallen.weights[c];
     }
-    const double density = here.density / piece.plane.unit_area;
+    const double density = here.density / piece.plane.mean_area;
     if (is_plain(piece, receiver)) return density * light;
     Vec3 origin(0), direction(0);
     for (int k = 0; k < 3; ++k) {
@@ -157,8 +157,8 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const FootprintPart&
     const double geometric = -dot(piece.plane.normal, direction);
     if (piece.way == Way::kUnknown) {
         const double t = dot(origin - piece.plane.point, piece.plane.normal) / geometric;
-        const Vec3 there = origin + t * direction + (receiver.lifted - receiver.point);
-        if (is_hidden(piece, there, origin)) return std::nullopt;
+        const Vec3 there = here.middle ? piece.plane.place(*here.middle) : origin + t * direction;
+        if (is_hidden(piece, there + (receiver.lifted - receiver.point), origin)) return std::nullopt;
     }
     light *= left_of(beams_.histories[piece.beam.history], origin, receiver);
     return density * std::min(cosine / geometric, kMostTurned) * light;

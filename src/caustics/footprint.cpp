@@ -10,10 +10,10 @@ namespace {
 /// a triangle.
 constexpr double kMostShare = 2;
 
-/// A convex polygon of at most 8 corners.
+/// A convex polygon of at most 12 corners.
 template <typename Corner>
 struct Polygon {
-    std::array<Corner, 8> corner;
+    std::array<Corner, 12> corner;
     std::size_t count = 0;
 
     /// Keeps what has side(corner) >= 0; `side` is affine.
@@ -41,6 +41,13 @@ double share_of(const BeamEnd& end, const EndOnPlane& on, double mean) {
     return end.concentration(on.height / on.fall) * on.fall / mean;
 }
 
+double area_of(std::span<const Vec2> outline) {
+    double twice = 0;
+    for (std::size_t i = 1; i + 1 < outline.size(); ++i)
+        twice += cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
+    return 0.5 * twice;
+}
+
 }  // namespace
 
 ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
@@ -49,21 +56,24 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
     for (Vec3& one : side) {
         one -= dot(one, normal) * normal;
         const double size = length(one);
-        if (size > largest_side) one *= largest_side / size;
+        if (size > largest_side && !receiver.keeps_sides) one *= largest_side / size;
     }
     const Vec3 across = cross(side[0], side[1]);
     const double area = dot(across, normal);
     const double longest = std::max(dot(side[0], side[0]), dot(side[1], side[1]));
     has_footprint = std::isfinite(longest) && std::fabs(area) > 1e-6 * longest && longest > 0;
     if (has_footprint) {
+        side_s = side[0], side_t = side[1];
         dual_s = cross(side[1], normal) / area;
         dual_t = cross(normal, side[0]) / area;
-        unit_area = std::fabs(area);
+        unit_area = mean_area = std::fabs(area);
+        outline = receiver.outline;
+        if (!outline.empty()) mean_area *= area_of(outline);
         reach = 0.5 * (length(side[0]) + length(side[1]));
         return;
     }
-    dual_s = unit_across(normal);
-    dual_t = cross(normal, dual_s);
+    side_s = dual_s = unit_across(normal);
+    side_t = dual_t = cross(normal, dual_s);
 }
 
 void keep_light(std::array<double, 3>& share) {
@@ -165,7 +175,7 @@ std::optional<FootprintPart> part_at_point(const FallenBeam& fallen) {
     if (!((side.x > 0 && side.y > 0 && side.z > 0) || (side.x < 0 && side.y < 0 && side.z < 0)))
         return std::nullopt;
     if (!(area > 0)) return std::nullopt;
-    return FootprintPart{fallen.measure / area, side / sum};
+    return FootprintPart{fallen.measure / area, side / sum, Vec2(0)};
 }
 
 Vec3 weights_at(const FallenBeam& fallen, const Vec2& at, double twice_area) {
@@ -181,17 +191,26 @@ std::optional<FootprintPart> part_at_footprint(const FallenBeam& fallen, const R
     Polygon<Vec2> inside;
     for (const Vec2& at : fallen.at) inside.corner[inside.count++] = at;
     bool is_cut = false;
-    for (int k = 0; k < 2; ++k)
-        for (const double sign : {-1.0, 1.0}) {
-            const auto side = [&](const Vec2& p) { return 0.5 - sign * p[k]; };
-            bool beyond = false;
-            for (std::size_t i = 0; i < inside.count; ++i) beyond = beyond || side(inside.corner[i]) < 0;
-            if (!beyond) continue;
-            is_cut = true;
-            inside.clip(side);
-            if (inside.count < 3) return std::nullopt;
+    const auto keep = [&](const auto& side) {
+        bool beyond = false;
+        for (std::size_t i = 0; i < inside.count; ++i) beyond = beyond || side(inside.corner[i]) < 0;
+        if (!beyond) return;
+        is_cut = true;
+        inside.clip(side);
+    };
+    if (plane.outline.empty()) {
+        for (int k = 0; k < 2; ++k)
+            for (const double sign : {-1.0, 1.0}) keep([&](const Vec2& p) { return 0.5 - sign * p[k]; });
+    } else {
+        for (std::size_t i = 0; i < plane.outline.size(); ++i) {
+            const Vec2 &a = plane.outline[i], &b = plane.outline[(i + 1) % plane.outline.size()];
+            keep([&](const Vec2& p) { return cross(b - a, p - a); });
         }
-    if (!is_cut) return FootprintPart{fallen.measure, Vec3(1.0 / 3)};
+    }
+    if (inside.count < 3) return std::nullopt;
+    if (!is_cut)
+        return FootprintPart{fallen.measure, Vec3(1.0 / 3),
+                             (fallen.at[0] + fallen.at[1] + fallen.at[2]) / 3.0};
     const double twice_area = cross(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]);
     double twice_part = 0;
     Vec2 middle(0);
@@ -204,7 +223,7 @@ std::optional<FootprintPart> part_at_footprint(const FallenBeam& fallen, const R
     const double share = twice_part / twice_area;
     if (!(share > 0)) return std::nullopt;
     return FootprintPart{fallen.measure * std::min(share, 1.0),
-                         weights_at(fallen, middle / twice_part, twice_area)};
+                         weights_at(fallen, middle / twice_part, twice_area), middle / twice_part};
 }
 
 }  // namespace trilens

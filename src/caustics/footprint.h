@@ -16,11 +16,15 @@ struct ReceiverPlane {
     explicit ReceiverPlane(const Receiver& receiver, double largest_side);
 
     Vec3 point{0}, normal{0};
+    Vec3 side_s{0}, side_t{0};
     Vec3 dual_s{0}, dual_t{0};
-    double unit_area = 1;  // world area of the unit square
+    std::span<const Vec2> outline;  // the receiver's: what lies beside it is no footprint
+    double unit_area = 1;           // world area of the unit square
+    double mean_area = 1;           // and of the footprint
     double reach = 0;      // of the footprint around the point
     bool has_footprint = false;
 
+    Vec3 place(const Vec2& at) const { return point + at.x * side_s + at.y * side_t; }
     Vec2 at(const Vec3& place) const {
         const Vec3 way = place - point;
         return {dot(way, dual_s), dot(way, dual_t)};
@@ -61,6 +65,7 @@ FallenBeams fall(const BeamCorners& beam, const ReceiverPlane& plane, double rea
 struct FootprintPart {
     double density = 0;  // of the light's film per unit of the plane's coordinates, times the part inside
     Vec3 weights{0};     // of the triangle's corners, at the part's middle
+    std::optional<Vec2> middle = {};  // in the plane's coordinates, where that is known
 };
 std::optional<FootprintPart> part_at_footprint(const FallenBeam& fallen, const ReceiverPlane& plane);
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <span>
 
 #include "base/math/vec.h"
 #include "base/util/ids.h"
@@ -16,6 +17,11 @@ struct Receiver {
     Vec3 lifted{0};          // where shadow rays end: off the surface, on its side
     // Sides of the parallelogram around the point over which light is averaged; zero: the point alone.
     std::array<Vec3, 2> sides{};
+    // Of that parallelogram only this convex part, in its sides from the point (the whole is from -1/2 to 1/2
+    // along each), counterclockwise, of at most 7 corners; empty: all of it. What is pointed to must live
+    // longer.
+    std::span<const Vec2> outline{};
+    bool keeps_sides = false;  // however long they are; else they end at a share of the scene
     Id triangle = kNone;  // it lies on, of those that the light knows; kNone: on none of them
     bool exact = false;   // as traced pictures want it, however long it takes
     const std::atomic<bool>* cancel = nullptr;  // set: who asked wants it no more, Interrupted is thrown

@@ -14,11 +14,13 @@ namespace {
 /// Of the job: while beams are made, and gathered where the object is flat.
 constexpr double kBeamsShare = 0.3, kGatheringShare = 0.3;
 
-/// The light of a pixel, and its area; none where the object is not.
+/// The light of a pixel, and the area of the object in it; none where the object is not.
 struct CausticPixel {
-    bool covered = false;
-    Vec3 irradiance{0};
     double area = 0;
+    Vec3 flux{0};
+
+    bool covered() const { return area > 0; }
+    Vec3 irradiance() const { return covered() ? flux / area : Vec3(0); }
 };
 
 TriangleScene triangles_of(const FlatRectangle& rectangle) {
@@ -38,16 +40,25 @@ struct PixelParams {
 
 CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, const Target& target,
                       const Vec2& pixel, const CausticMapRequest& request, const PixelParams& params) {
-    const std::optional<TargetPlace> place = target.place(pixel);
-    if (!place) return {};
-    // Rows go downward, so the front's normal is dy x dx.
-    Vec3 normal = normalize_or_zero(cross(place->dy, place->dx));
-    if (request.back) normal = -normal;
-    Receiver receiver{place->at, normal, normal, place->at + params.lift * normal, {place->dx, place->dy}};
-    if (target.rectangle()) receiver.triangle = 0;
-    receiver.exact = request.exact;
-    receiver.cancel = params.cancel;
-    return {true, irradiance(lights, receiver), length(cross(place->dx, place->dy))};
+    CausticPixel found;
+    for (const TargetPiece& piece : target.pieces(pixel)) {
+        const TargetPlace& place = piece.at_middle;
+        // Rows go downward, so the front's normal is dy x dx.
+        Vec3 normal = normalize_or_zero(cross(place.dy, place.dx));
+        if (request.back) normal = -normal;
+        Receiver receiver{place.at, normal, normal, place.at + params.lift * normal, {place.dx, place.dy}};
+        receiver.keeps_sides = true;
+        if (target.rectangle())
+            receiver.triangle = 0;
+        else
+            receiver.outline = piece.outline;
+        receiver.exact = request.exact;
+        receiver.cancel = params.cancel;
+        const double area = piece.share * length(cross(place.dx, place.dy));
+        found.area += area;
+        found.flux += area * irradiance(lights, receiver);
+    }
+    return found;
 }
 
 }  // namespace
@@ -89,9 +100,9 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
                 const CausticPixel pixel =
                     pixel_at(lights, target, Vec2(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5),
                              request, {kShadowOffset * world.shading.size, progress.cancel});
-                map.irradiance[y * width + x] = pixel.irradiance;
-                map.covered[y * width + x] = pixel.covered;
-                row_flux[y] += pixel.area * pixel.irradiance;
+                map.irradiance[y * width + x] = pixel.irradiance();
+                map.covered[y * width + x] = pixel.covered();
+                row_flux[y] += pixel.flux;
             }
             drawn.add(1);
         }

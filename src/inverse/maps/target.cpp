@@ -176,21 +176,42 @@ bool Target::shares_coordinates() const {
     return false;
 }
 
+/// In the triangle's plane; `inside`: none where it does not lie in the triangle.
+std::optional<TargetPlace> Target::place_on(Id triangle, const Vec2& pixel, bool inside) const {
+    const Vec2 uv(pixel.x / description_.width, 1 - pixel.y / description_.height);
+    const std::optional<CornerWeights> by = corner_weights(object_->uvs[triangle]);
+    if (!by) return std::nullopt;
+    const Vec2 weights = by->of(uv - object_->uvs[triangle][0]);
+    if (inside && (weights.x < 0 || weights.y < 0 || weights.x + weights.y > 1)) return std::nullopt;
+    const IdTriple& corner = object_->triangles[triangle];
+    const Vec3 &p = object_->points[corner[0]], ab = object_->points[corner[1]] - p,
+               ac = object_->points[corner[2]] - p;
+    const auto moved = [&](const Vec2& step) { return by->of(step).x * ab + by->of(step).y * ac; };
+    return TargetPlace{false, p + weights.x * ab + weights.y * ac, moved({1.0 / description_.width, 0}),
+                       moved({0, -1.0 / description_.height})};
+}
+
 std::optional<TargetPlace> Target::object_place(const Vec2& pixel) const {
     const Vec2 uv(pixel.x / description_.width, 1 - pixel.y / description_.height);
-    for (const Id t : triangles_near(uv)) {
-        const std::optional<CornerWeights> by = corner_weights(object_->uvs[t]);
-        if (!by) continue;
-        const Vec2 weights = by->of(uv - object_->uvs[t][0]);
-        if (weights.x < 0 || weights.y < 0 || weights.x + weights.y > 1) continue;
-        const IdTriple& corner = object_->triangles[t];
-        const Vec3 &p = object_->points[corner[0]], ab = object_->points[corner[1]] - p,
-                   ac = object_->points[corner[2]] - p;
-        const auto moved = [&](const Vec2& step) { return by->of(step).x * ab + by->of(step).y * ac; };
-        return TargetPlace{false, p + weights.x * ab + weights.y * ac, moved({1.0 / description_.width, 0}),
-                           moved({0, -1.0 / description_.height})};
-    }
+    for (const Id t : triangles_near(uv))
+        if (const std::optional<TargetPlace> place = place_on(t, pixel, true)) return place;
     return std::nullopt;
+}
+
+/// Those that may lie in the pixel, ascending.
+std::vector<Id> Target::triangles_around(const Vec2& pixel) const {
+    const Vec2 size(description_.width, description_.height);
+    const auto bin = [](double x) { return std::clamp(static_cast<int>(x * kBinSide), 0, kBinSide - 1); };
+    const Vec2 low = (pixel - 0.5) / size, high = (pixel + 0.5) / size;
+    std::vector<Id> around;
+    for (int y = bin(1 - high.y); y <= bin(1 - low.y); ++y)
+        for (int x = bin(low.x); x <= bin(high.x); ++x) {
+            const std::vector<Id>& near = bins_[static_cast<std::size_t>(y * kBinSide + x)];
+            around.insert(around.end(), near.begin(), near.end());
+        }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    return around;
 }
 
 std::optional<TargetPlace> Target::place(const Vec2& pixel) const {

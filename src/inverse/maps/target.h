@@ -74,6 +74,13 @@ struct TargetPlace {
     Vec3 at{0}, dx{0}, dy{0};
 };
 
+/// A flat part of what a pixel shows of a target's plane or object.
+struct TargetPiece {
+    TargetPlace at_middle;      // where the pixel's middle would lie in the part's plane
+    std::vector<Vec2> outline;  // convex, in pixels from the middle, counterclockwise as x is to y
+    double share = 1;           // of the pixel's area
+};
+
 /// Whether a target's pixels are directions, or else points.
 constexpr bool has_directions(TargetKind kind) {
     return kind != TargetKind::kPlane && kind != TargetKind::kObject;
@@ -97,6 +104,11 @@ class Target {
     /// fisheye.
     std::optional<TargetPlace> place(const Vec2& pixel) const;
 
+    /// The parts of the pixel with this middle that triangles of the object have, whole where the target is a
+    /// rectangle; of triangles that lie on each other's texture coordinates the first one's. Not of
+    /// directions.
+    std::vector<TargetPiece> pieces(const Vec2& pixel) const;
+
     /// Back: where a direction (any length) lies; none for planes and objects, and outside the circle of a
     /// fisheye.
     std::optional<Vec2> pixel_of_direction(const Vec3& direction) const;
@@ -114,6 +126,8 @@ class Target {
 
   private:
     std::optional<TargetPlace> object_place(const Vec2& pixel) const;
+    std::optional<TargetPlace> place_on(Id triangle, const Vec2& pixel, bool inside) const;
+    std::vector<Id> triangles_around(const Vec2& pixel) const;
     const std::vector<Id>& triangles_near(const Vec2& uv) const;
 
     TargetDescription description_;
