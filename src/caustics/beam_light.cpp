@@ -19,6 +19,9 @@ constexpr double kMostTurned = 10;
 /// Rays of a beam may fall this many tolerances beside its triangle.
 constexpr double kMostBent = 2;
 
+/// A receiver's slack is no more than this share of the way to the last optic.
+constexpr double kMostSlack = 0.5;
+
 /// What falls on faces smaller than this share of the scene is looked up beam by beam.
 constexpr double kSmallFace = 0.004;
 
@@ -158,7 +161,9 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const FootprintPart&
     if (piece.way == Way::kUnknown) {
         const double t = dot(origin - piece.plane.point, piece.plane.normal) / geometric;
         const Vec3 there = here.middle ? piece.plane.place(*here.middle) : origin + t * direction;
-        if (is_hidden(piece, there + (receiver.lifted - receiver.point), origin)) return std::nullopt;
+        const Vec3 lifted = there + (receiver.lifted - receiver.point), way = origin - lifted;
+        const double past = std::min(receiver.slack / length(way), kMostSlack);
+        if (is_hidden(piece, lifted + past * way, origin)) return std::nullopt;
     }
     light *= left_of(beams_.histories[piece.beam.history], origin, receiver);
     return density * std::min(cosine / geometric, kMostTurned) * light;

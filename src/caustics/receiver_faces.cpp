@@ -12,6 +12,9 @@ namespace {
 /// How far corners may lie beside a plane, as a share of the distances on it.
 constexpr double kFlat = 1e-9;
 
+/// A face is a rectangle that has this share of the one around it.
+constexpr double kFilled = 1 - 1e-9;
+
 using Corners = std::array<Vec3, 3>;
 
 bool lies_in(const ReceiverFace& face, const Corners& points) {
@@ -49,6 +52,7 @@ ReceiverFaces::ReceiverFaces(const TriangleScene& scene) : face_of_(scene.size()
         face.center = 0.5 * (box.low + box.high);
         face.center -= dot(face.center - face.point, face.normal) * face.normal;
         face.radius = 0.5 * length(box.size());
+        face.area += 0.5 * length(cross(points[1] - points[0], points[2] - points[0]));
         face_of_[t] = static_cast<Id>(faces_.size() - 1);
         last = t;
     }
@@ -61,6 +65,13 @@ ReceiverFaces::ReceiverFaces(const TriangleScene& scene) : face_of_(scene.size()
                 face.half, glm::abs(Vec2(dot(way, face.along), dot(way, cross(face.normal, face.along)))));
         }
     }
+}
+
+bool ReceiverFaces::holds(Id face, const Vec3& place) const {
+    const ReceiverFace& one = faces_[face];
+    const Vec3 way = place - one.center;
+    const Vec2 at = glm::abs(Vec2(dot(way, one.along), dot(way, cross(one.normal, one.along))));
+    return one.area >= kFilled * 4 * one.half.x * one.half.y && at.x <= one.half.x && at.y <= one.half.y;
 }
 
 }  // namespace trilens

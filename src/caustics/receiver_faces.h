@@ -16,6 +16,7 @@ struct ReceiverFace {
     // A rectangle in the plane around the center that holds it.
     Vec3 along{0};  // unit: its first triangle's longest side
     Vec2 half{0};   // of its sides, along and across
+    double area = 0;
 };
 
 /// One side of one of them.
@@ -36,6 +37,8 @@ class ReceiverFaces {
     const std::vector<ReceiverFace>& faces() const { return faces_; }
     /// kNone: the triangle has no area, or is none of the scene's.
     Id face_of(Id triangle) const { return triangle < face_of_.size() ? face_of_[triangle] : kNone; }
+    /// Whether a place in the face's plane lies on the face; false also where it is no rectangle.
+    bool holds(Id face, const Vec3& place) const;
     /// On the side to which `outward` points.
     ReceiverSide side_of(Id triangle, const Vec3& outward) const {
         const Id face = face_of(triangle);

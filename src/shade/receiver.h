@@ -22,6 +22,8 @@ struct Receiver {
     // longer.
     std::span<const Vec2> outline{};
     bool keeps_sides = false;  // however long they are; else they end at a share of the scene
+    Vec3 seen_along{0};        // the direction in which it is looked at, of any length; zero: not told
+    double slack = 0;          // what lies nearer than this on the way to the light hides nothing
     Id triangle = kNone;  // it lies on, of those that the light knows; kNone: on none of them
     bool exact = false;   // as traced pictures want it, however long it takes
     const std::atomic<bool>* cancel = nullptr;  // set: who asked wants it no more, Interrupted is thrown

@@ -272,6 +272,7 @@ void Shaded::add_caustic(std::size_t light, ShadeBatch::Bits wanted) {
         receiver.shading_normal = batch.normal.get(i);
         receiver.lifted = batch.shadow_start.get(i);
         if (seen[i]->footprint) receiver.sides = *seen[i]->footprint;
+        receiver.seen_along = seen[i]->ray->direction;
         receiver.triangle = seen[i]->hit->triangle;
         receiver.exact = seen[i]->exact_caustics;
         receiver.cancel = seen[i]->cancel;
