@@ -64,7 +64,7 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
 BeamLight::~BeamLight() = default;
 
 FluxEnds BeamLight::flux_ends() const {
-    return trilens::flux_ends(*refined_, beams_);
+    return trilens::flux_ends({*refined_, beams_, *space_.optics});
 }
 
 void BeamLight::receive_on(std::shared_ptr<const ReceiverFaces> faces) {

@@ -32,8 +32,8 @@ void add_to(FluxEnds& sum, EndKind kind, const Vec3& flux) {
 /// One beam's.
 class BeamFluxEnds {
   public:
-    BeamFluxEnds(const RefinedBeams& refined, const Beams& beams, Id beam, double faint)
-        : refined_(refined), beams_(beams), beam_(beam), faint_(faint) {}
+    BeamFluxEnds(const FluxQuery& query, Id beam, double faint)
+        : refined_(query.refined), beams_(query.beams), optics_(query.optics), beam_(beam), faint_(faint) {}
 
     FluxEnds sum() {
         const LightBeam& beam = beams_.beams[beam_];
@@ -50,8 +50,10 @@ class BeamFluxEnds {
         }
         if (are_alike) {
             // Exact for quadratic light: at a rim, where Fresnel's weights are steep, corners say too much.
+            Vec3 left(0);
+            for (const BeamEnd* one : end) left += left_of(*one) / 3.0;
             for (const BeamEnd* middle : refined_.side_middles(beam_))
-                add_to(sum_, kind, beam.measure / 3 * middle->light);
+                add_to(sum_, kind, beam.measure / 3 * left * middle->light);
         } else {
             add(end, is_in_air ? 0 : kMostEndHalvings);
         }
@@ -77,6 +79,13 @@ class BeamFluxEnds {
         return &known->second;
     }
 
+    /// What the glass that the end lies in leaves on the way to an object in it.
+    Vec3 left_of(const BeamEnd& end) const {
+        const Id medium = beams_.histories[beams_.beams[beam_].history].medium;
+        if (kind_of(end) != EndKind::kObject) return Vec3(1);
+        return body_transmittance(optics_, medium, end.object * length(end.direction));
+    }
+
     void add(const BeamEnds& end, int level) {
         const double measure = refined_.corners(beam_, end).measure;
         Vec3 light(0);
@@ -84,7 +93,8 @@ class BeamFluxEnds {
         const EndKind kind = kind_of(*end[0]);
         if (kind_of(*end[1]) == kind && kind_of(*end[2]) == kind) return add_to(sum_, kind, light);
         if (level == kMostEndHalvings || light.x + light.y + light.z < faint_) {
-            for (const BeamEnd* one : end) add_to(sum_, kind_of(*one), measure / 3 * one->light);
+            for (const BeamEnd* one : end)
+                add_to(sum_, kind_of(*one), measure / 3 * left_of(*one) * one->light);
             return;
         }
         const BeamEnds middles{middle(*end[1], *end[2]), middle(*end[2], *end[0]), middle(*end[0], *end[1])};
@@ -93,6 +103,7 @@ class BeamFluxEnds {
 
     const RefinedBeams& refined_;
     const Beams& beams_;
+    const PathWorld& optics_;
     const Id beam_;
     const double faint_;
     FluxEnds sum_;
@@ -101,13 +112,14 @@ class BeamFluxEnds {
 
 }  // namespace
 
-FluxEnds flux_ends(const RefinedBeams& refined, const Beams& beams) {
+FluxEnds flux_ends(const FluxQuery& query) {
+    const Beams& beams = query.beams;
     const Vec3 arriving = beams.flux_arriving();
     const double faint = kFaintEnd * (arriving.x + arriving.y + arriving.z);
     std::vector<FluxEnds> of_beam(beams.beams.size());
     parallel_for(of_beam.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i)
-            of_beam[i] = BeamFluxEnds(refined, beams, static_cast<Id>(i), faint).sum();
+            of_beam[i] = BeamFluxEnds(query, static_cast<Id>(i), faint).sum();
     });
     FluxEnds all;
     for (const FluxEnds& one : of_beam) all.on_objects += one.on_objects, all.away += one.away;

@@ -7,13 +7,19 @@ namespace trilens {
 
 /// Lumen, or watt, as the light's intensity has it.
 struct FluxEnds {
-    Vec3 on_objects{0};  // of the light of all stretches what ends on objects, before absorption on the last one
+    Vec3 on_objects{0};  // what ends on objects
     Vec3 away{0};        // what goes away from the scene
 };
 
-/// `refined`: of these beams. A beam whose corners and middles of sides do not all end alike is divided by
+struct FluxQuery {
+    const RefinedBeams& refined;  // of these beams
+    const Beams& beams;
+    const PathWorld& optics;
+};
+
+/// A beam whose corners and middles of sides do not all end alike is divided by
 /// exact rays; one in a body of glass is shared out by its corners. What ends on an object that is smaller
 /// than a beam, and at none of these places, counts as the rest of the beam.
-FluxEnds flux_ends(const RefinedBeams& refined, const Beams& beams);
+FluxEnds flux_ends(const FluxQuery& query);
 
 }  // namespace trilens
