@@ -120,7 +120,7 @@ void bind_parts(py::module_& module) {
         terrain, field("columns", &TerrainInfo::columns, "Samples across."),
         field("rows", &TerrainInfo::rows, "Samples down."),
         field("missing_heights", &TerrainInfo::missing_heights,
-              "Samples without a height: the cells around them are holes."),
+              "Samples without a height: the triangles that touch them are left out."),
         field("whole_triangles", &TerrainInfo::whole_triangles, "That the whole grid has, without holes."),
         field("greatest_error", &TerrainInfo::greatest_error,
               "How far its triangles are from those at most, along its y, before its transform."),

@@ -41,9 +41,10 @@ struct TerrainMesh {
     double greatest_error = 0, rms_error = 0;
 };
 
-/// The triangles of the grid, where `thinning` is given those that matter. Cells around samples without a
-/// height are holes. `progress`: of Thinning::moves, which may take minutes. Throws std::length_error, with
-/// how many there are, above kMostTerrainTriangles; Interrupted once `progress` says so.
+/// The triangles of the grid, where `thinning` is given those that matter. Triangles that touch samples
+/// without a height are left out. `progress`: of Thinning::moves, which may take minutes. Throws
+/// std::length_error, with how many there are, above kMostTerrainTriangles; Interrupted once `progress` says
+/// so.
 TerrainMesh make_terrain(const HeightGrid& heights, const TerrainShape& shape,
                          const std::optional<Thinning>& thinning, const Progress& progress = {});
 

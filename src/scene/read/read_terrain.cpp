@@ -21,9 +21,10 @@ const std::vector<Field<TerrainSettings>>& terrain_fields() {
         setting("size", &TerrainSettings::size, several(3, ref("positive")),
                 "terrain: along x and z of the whole grid, along y of a height of 1.")
             .without_default(),
-        setting("noData", &TerrainSettings::no_data, ref("number"),
-                "terrain: the value of samples without a height, as those that are not finite are: the cells "
-                "around them are holes.")
+        setting(
+            "noData", &TerrainSettings::no_data, ref("number"),
+            "terrain: the value of samples without a height, as those that are not finite are: the triangles "
+            "that touch them are left out.")
             .without_default(),
         setting("heightError", &TerrainSettings::height_error, ref("notNegative"),
                 "terrain: how far along y, before transform, triangles may be from those of all samples; "
@@ -139,8 +140,9 @@ void read_terrain(const Node& node, Mesh& mesh, Reading& reading) {
     terrain->rms_error = made.rms_error;
     if (made.triangles.empty()) node["heights"].fail("the terrain has no cell with four heights");
     if (made.missing_heights > 0)
-        reading.warn(node["heights"].place, std::to_string(made.missing_heights) +
-                                                " samples have no height: the cells around them are holes");
+        reading.warn(node["heights"].place,
+                     std::to_string(made.missing_heights) +
+                         " samples have no height: the triangles that touch them are left out");
     mesh.terrain = std::move(terrain);
     mesh.face_count = made.triangles.size();
 
