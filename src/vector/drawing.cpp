@@ -218,8 +218,10 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
                 add(kOpticPaths[p], world.optics[i].mesh,
                     {world.objects, edges, node.mesh, grid, facets, ids.seen[p], lines.wire});
                 add_folds(node.mesh, facets);
-                for (EdgeCurve& curve : drawing->layers.back()->curves)
-                    curve.facet = frame.optics[i].grid_facet(paths.leaves[node.leaves[curve.facet]].facet);
+                for (EdgeCurve& curve : drawing->layers.back()->curves) {
+                    const Id facet = paths.leaves[node.leaves[curve.facet]].facet;
+                    curve.facet = paths.is_on_film() ? facet : frame.optics[i].grid_facet(facet);
+                }
             }
     drawing->marks = place_marks(world, params);
     if (warn) tell_marks(world, drawing->marks, warn);

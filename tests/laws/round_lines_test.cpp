@@ -67,7 +67,8 @@ Scene balls_over(const CameraKind& camera, Over over, Id divisions, unsigned see
     }
     if (over == Over::kNothing) return scene;
     Mesh mirror;
-    mirror.name = "mirror", mirror.role = Role::kOptic, mirror.material = 1, mirror.resolution = 8, mirror.rays = CornerRays::kInterpolated;
+    mirror.name = "mirror", mirror.role = Role::kOptic, mirror.material = 1, mirror.resolution = 8,
+    mirror.rays = CornerRays::kInterpolated;
     mirror.primitive = Primitive{.axis = {0, 0, 1}, .kind = PlanePrimitive{.size = {9, 7}}};
     if (over == Over::kSphere) mirror.primitive = Primitive{.kind = SpherePrimitive{.radius = 1.7}};
     scene.meshes.push_back(mirror);
@@ -90,4 +91,14 @@ TEST_CASE("a ball's silhouette is whole, however finely the ball is divided", "[
                 REQUIRE(borders.count > 40);
                 CHECK(borders.without == 0);
             }
+}
+
+TEST_CASE("lines in facets of the film of a camera that is not linear name those", "[laws][vector][law]") {
+    Scene scene = balls_over(FisheyeCamera{.fov = 50}, Over::kPlane, 24, 3);
+    scene.meshes.back().resolution = 3;
+    for (const GridKind grid : {GridKind::kSurface, GridKind::kScreen}) {
+        scene.meshes.back().grid = grid;
+        const std::string svg = Renderer(scene).draw_lines({}).svg;
+        CHECK(svg.find("data-facet", svg.find("class=\"reflect\"")) != std::string::npos);
+    }
 }

@@ -8,6 +8,7 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
+#include "base/util/check.h"
 #include "base/util/error.h"
 #include "camera/model/camera_model.h"
 #include "paths/facets/optic_paths.h"
@@ -82,7 +83,11 @@ struct FramedOptic {
     /// The RayMeshes' facet by which the film shows facet f of the grid at that place; kNone: none does.
     Id mesh_facet(Id f, const Vec2& at) const { return film_grid ? film_grid->facet_at(f, at, *model) : f; }
     /// The grid's facet that a facet of the RayMeshes is.
-    Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
+    Id grid_facet(Id f) const {
+        if (!film_grid) return f;
+        TRILENS_CHECK(f < film_grid->original.size(), "a facet of the RayMeshes, not of the film");
+        return film_grid->original[f];
+    }
     CornerRays rays = CornerRays::kInterpolated;
     bool layered = false;  // optics seen in it are nested optics where they can be
 };
