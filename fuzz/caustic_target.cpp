@@ -53,9 +53,6 @@ void require_picture(const Renderer& renderer) {
 /// What beams that end at borders of histories may count twice.
 constexpr double kBorder = 0.02;
 
-/// What may end on an object that lies between the rays by which a beam's end is told.
-constexpr double kBetween = 1e-4;
-
 /// Of each colour: what comes to the optics is not less than what leaves them, nor that less than what a map
 /// gets.
 void require_balance(const CausticMap& map) {
@@ -66,7 +63,7 @@ void require_balance(const CausticMap& map) {
             std::isfinite(in) && std::isfinite(out) && std::isfinite(got) && in >= 0 && out >= 0 && got >= 0,
             "a flux that is none");
         require(out <= in * (1 + kBorder), fmt::format("optics make light: {} of {}", out, in));
-        require(got <= map.flux_on_objects[c] * (1 + 1e-6) + kBetween * in,
+        require(got <= map.flux_on_objects[c] * (1 + 1e-6) + 1e-9 * in,
                 fmt::format("a map receives {} of {} on objects, {} in", got, map.flux_on_objects[c], in));
     }
     for (const Vec3& light : map.irradiance)
