@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/polygon.h"
+
 namespace trilens {
 namespace {
 
@@ -41,13 +43,6 @@ double share_of(const BeamEnd& end, const EndOnPlane& on, double mean) {
     return end.concentration(on.height / on.fall) * on.fall / mean;
 }
 
-double area_of(std::span<const Vec2> outline) {
-    double twice = 0;
-    for (std::size_t i = 1; i + 1 < outline.size(); ++i)
-        twice += cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
-    return 0.5 * twice;
-}
-
 }  // namespace
 
 ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
@@ -68,7 +63,7 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
         dual_t = cross(normal, side[0]) / area;
         unit_area = mean_area = std::fabs(area);
         outline = receiver.outline;
-        if (!outline.empty()) mean_area *= area_of(outline);
+        if (!outline.empty()) mean_area *= polygon_area(outline);
         reach = 0.5 * (length(side[0]) + length(side[1]));
         return;
     }

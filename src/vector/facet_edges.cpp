@@ -138,9 +138,7 @@ bool EdgeSearch::turns_away(Id triangle, std::size_t edge, Id next, const Vec3& 
     const auto from =
         static_cast<std::size_t>(std::find(there.begin(), there.end(), here[edge]) - there.begin());
     const bool same_winding = there[(from + 1) % 3] != here[(edge + 1) % 3];
-    const double side = dot(view_.edges.normal[triangle], direction),
-                 other = dot(view_.edges.normal[next], direction) * (same_winding ? 1 : -1);
-    return (side > 0) != (other > 0);
+    return is_silhouette(view_.edges, {triangle, edge, next, false, same_winding}, direction);
 }
 
 /// From a triangle over an edge, unless that is a silhouette there, to one that lies more aslant, which the
@@ -155,7 +153,7 @@ void EdgeSearch::walk_over(const NearTriangle& from, std::size_t edge) {
     const Vec2 low = min(a, min(b, c)), high = max(a, max(b, c));
     if (!(low.x <= high_.x && low.y <= high_.y && high.x >= low_.x && high.y >= low_.y)) return;
     const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-    const double twice_area = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    const double twice_area = std::fabs(cross(b - a, c - a));
     const double away = from.away + (longest > 0 ? twice_area / longest * view_.grid.side : 0);
     if (!(away <= kReach)) return;
     reached_.insert(next);

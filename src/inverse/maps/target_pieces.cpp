@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/math/vec.h"
+#include "base/math/polygon.h"
 #include "inverse/maps/target.h"
 
 namespace trilens {
@@ -22,13 +22,6 @@ std::vector<Vec2> clipped(const std::vector<Vec2>& outline, const Vec2& from, co
         if ((at_a >= 0) != (at_b >= 0)) kept.push_back(a + at_a / (at_a - at_b) * (b - a));
     }
     return kept;
-}
-
-double area_of(const std::vector<Vec2>& outline) {
-    double twice = 0;
-    for (std::size_t i = 1; i + 1 < outline.size(); ++i)
-        twice += cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
-    return 0.5 * twice;
 }
 
 bool holds(const std::vector<Vec2>& outline, const Vec2& at) {
@@ -59,7 +52,7 @@ std::vector<TargetPiece> Target::pieces(const Vec2& pixel) const {
         if (cross(corner[1] - corner[0], corner[2] - corner[0]) < 0) std::swap(corner[1], corner[2]);
         std::vector<Vec2> outline = kWholePixel;
         for (std::size_t k = 0; k < 3; ++k) outline = clipped(outline, corner[k], corner[(k + 1) % 3]);
-        const double share = area_of(outline);
+        const double share = polygon_area(outline);
         if (!(share > kLeastShare)) continue;
         const Vec2 middle = middle_of(outline);
         const auto lies_here = [&](const TargetPiece& other) { return holds(other.outline, middle); };
