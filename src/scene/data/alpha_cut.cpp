@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/image/texture_lookup.h"
+#include "base/math/polygon.h"
 #include "scene/data/polygons.h"
 
 namespace trilens {
@@ -118,10 +119,7 @@ class CellParts {
 
 /// Whether it has an area: pieces that only touch a triangle have none.
 bool has_area(const GridPolygon& polygon) {
-    double twice = 0;
-    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
-        twice += cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
-    return std::fabs(twice) > kLeastArea;
+    return std::fabs(polygon_area(polygon)) > kLeastArea;
 }
 
 /// The pieces of one triangle that are left.
