@@ -63,10 +63,6 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
 
 BeamLight::~BeamLight() = default;
 
-FluxEnds BeamLight::flux_ends() const {
-    return trilens::flux_ends({*refined_, beams_, *space_.optics});
-}
-
 void BeamLight::receive_on(std::shared_ptr<const ReceiverFaces> faces) {
     faces_ = std::move(faces);
     on_face_ = std::make_unique<Lazy<PlaneBeams>[]>(2 * faces_->faces().size());
@@ -180,38 +176,60 @@ bool BeamLight::is_plain(const ReceiverPlane& plane, const Receiver& receiver) c
     return !space_.veil && receiver.shading_normal == plane.normal;
 }
 
+/// Calls use(light) for the light of a part of a beam, where that comes.
+template <typename Use>
+auto BeamLight::part_user(const ReceiverPlane& plane, const Receiver& receiver, const Use& use) const {
+    return [&, this](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen,
+                     const FootprintPart& part) {
+        if (const auto light = light_of({beams_.beams[index], corners, fallen, plane, way}, part, receiver))
+            use(*light);
+    };
+}
+
 /// Calls use(light) for what arrives by each beam, or each of its exact pieces, or by all of several beams.
 template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
-    const auto use_part = [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen,
-                              const FootprintPart& part) {
-        if (const auto light = light_of({beams_.beams[index], corners, fallen, plane, way}, part, receiver))
-            use(*light);
-    };
-    const auto use_piece = [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
-        if (const auto part = part_at_footprint(fallen, plane)) use_part(index, way, corners, fallen, *part);
-    };
     if (const PlaneBeams* on_plane = receiver.exact ? nullptr : plane_beams(receiver)) {
-        if (!plane.has_footprint) return on_plane->for_each_piece(plane, use_piece);
+        const auto use_part = part_user(plane, receiver, use);
+        if (!plane.has_footprint)
+            return on_plane->for_each_piece(
+                plane, [&](Id index, Way way, const BeamCorners& corners, const FallenBeam& fallen) {
+                    if (const auto part = part_at_footprint(fallen, plane))
+                        use_part(index, way, corners, fallen, *part);
+                });
         return on_plane->for_each_part(
             plane, is_plain(plane, receiver), [&](const Vec3& light) { use(light / plane.unit_area); },
             use_part);
     }
-    const double bent = reach_beyond_faces();
-    const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
-    tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? bent : 0), [&](Id index) {
-        Way way =
-            way_to(corners_of(beams_, beams_.beams[index]).end, plane, kSamePlace * space_.size);
-        if (way == Way::kStopped) return;
-        if (receiver.exact) way = Way::kUnknown;
-        const auto use_one = [&](const BeamCorners& corners, const FallenBeam& fallen) {
-            use_piece(index, way, corners, fallen);
-        };
-        if (receiver.exact)
-            refined_->for_each_piece(index, plane, guess, use_one);
-        else
-            refined_->for_each_curved_piece(index, plane, use_one);
+    tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? reach_beyond_faces() : 0),
+                        [&](Id index) { for_each_arrival_of(index, plane, receiver, use); });
+}
+
+/// Those of one beam.
+template <typename Use>
+void BeamLight::for_each_arrival_of(Id index, const ReceiverPlane& plane, const Receiver& receiver,
+                                    const Use& use) const {
+    Way way = way_to(corners_of(beams_, beams_.beams[index]).end, plane, kSamePlace * space_.size);
+    if (way == Way::kStopped) return;
+    if (receiver.exact) way = Way::kUnknown;
+    const auto use_part = part_user(plane, receiver, use);
+    const auto use_one = [&](const BeamCorners& corners, const FallenBeam& fallen) {
+        if (const auto part = part_at_footprint(fallen, plane)) use_part(index, way, corners, fallen, *part);
+    };
+    if (!receiver.exact) return refined_->for_each_curved_piece(index, plane, use_one);
+    const double guess = reach_beyond_faces() * std::max(length(plane.dual_s), length(plane.dual_t));
+    refined_->for_each_piece(index, plane, guess, use_one);
+}
+
+void BeamLight::for_each_flux(const Receiver& receiver, const std::vector<char>& wanted,
+                              const std::function<void(Id beam, const Vec3& flux)>& use) const {
+    const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
+    if (!plane.has_footprint) return;
+    tree_.for_each_near(receiver.point, plane.reach, [&](Id index) {
+        if (!wanted[index]) return;
+        for_each_arrival_of(index, plane, receiver,
+                            [&](const Vec3& light) { use(index, plane.mean_area * light); });
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,14 +71,25 @@ class BeamLight {
     Vec3 exact_irradiance(const Receiver& receiver) const;
     std::vector<ExactArrival> exact_arrivals(const Receiver& receiver) const;
 
+    /// Calls use(beam, flux) for what each of the wanted beams (by beam, nonzero) brings to the receiver's
+    /// footprint, which it has.
+    void for_each_flux(const Receiver& receiver, const std::vector<char>& wanted,
+                       const std::function<void(Id beam, const Vec3& flux)>& use) const;
+
     const Beams& beams() const { return beams_; }
-    FluxEnds flux_ends() const;
+    /// `objects`: the triangles that stop light.
+    FluxEnds flux_ends(const TriangleScene& objects) const;
     const BeamLosses& losses() const { return losses_; }
 
   private:
     struct Piece;
     template <typename Use>
+    auto part_user(const ReceiverPlane& plane, const Receiver& receiver, const Use& use) const;
+    template <typename Use>
     void for_each_arrival(const Receiver& receiver, const Use& use) const;
+    template <typename Use>
+    void for_each_arrival_of(Id beam, const ReceiverPlane& plane, const Receiver& receiver,
+                             const Use& use) const;
     std::optional<Vec3> light_of(const Piece& piece, const FootprintPart& here,
                                  const Receiver& receiver) const;
     bool is_plain(const Piece& piece, const Receiver& receiver) const;

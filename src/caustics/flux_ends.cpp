@@ -30,12 +30,12 @@ void add_to(FluxEnds& sum, EndKind kind, const Vec3& flux) {
 }
 
 /// One beam's.
-class BeamFluxEnds {
+class BeamDivider {
   public:
-    BeamFluxEnds(const FluxQuery& query, Id beam, double faint)
+    BeamDivider(const FluxQuery& query, Id beam, double faint)
         : refined_(query.refined), beams_(query.beams), optics_(query.optics), beam_(beam), faint_(faint) {}
 
-    FluxEnds sum() {
+    BeamFluxEnds sum() {
         const LightBeam& beam = beams_.beams[beam_];
         const BeamEnds end = corners_of(beams_, beam).end;
         const bool is_in_air = beams_.histories[beam.history].medium == kNone;
@@ -48,6 +48,7 @@ class BeamFluxEnds {
             refined_.look_ahead(beam_, middle);
             are_alike = kind_of(middle) == kind;
         }
+        sum_.is_sure = are_alike && kind == EndKind::kObject;
         if (are_alike) {
             // Exact for quadratic light: at a rim, where Fresnel's weights are steep, corners say too much.
             Vec3 left(0);
@@ -106,24 +107,22 @@ class BeamFluxEnds {
     const PathWorld& optics_;
     const Id beam_;
     const double faint_;
-    FluxEnds sum_;
+    BeamFluxEnds sum_;
     std::map<Side, BeamEnd, Before> middles_;  // neighbouring parts share them
 };
 
 }  // namespace
 
-FluxEnds flux_ends(const FluxQuery& query) {
+std::vector<BeamFluxEnds> flux_ends_by_rays(const FluxQuery& query) {
     const Beams& beams = query.beams;
     const Vec3 arriving = beams.flux_arriving();
     const double faint = kFaintEnd * (arriving.x + arriving.y + arriving.z);
-    std::vector<FluxEnds> of_beam(beams.beams.size());
+    std::vector<BeamFluxEnds> of_beam(beams.beams.size());
     parallel_for(of_beam.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i)
-            of_beam[i] = BeamFluxEnds(query, static_cast<Id>(i), faint).sum();
+            of_beam[i] = BeamDivider(query, static_cast<Id>(i), faint).sum();
     });
-    FluxEnds all;
-    for (const FluxEnds& one : of_beam) all.on_objects += one.on_objects, all.away += one.away;
-    return all;
+    return of_beam;
 }
 
 }  // namespace trilens

@@ -1,6 +1,8 @@
 // Where a light's beams end: on objects, or out of the scene.
 #pragma once
 
+#include <vector>
+
 #include "caustics/refined_beams.h"
 
 namespace trilens {
@@ -11,15 +13,20 @@ struct FluxEnds {
     Vec3 away{0};        // what goes away from the scene
 };
 
+/// One beam's.
+struct BeamFluxEnds : FluxEnds {
+    bool is_sure = false;  // all rays that were asked end on objects
+};
+
 struct FluxQuery {
     const RefinedBeams& refined;  // of these beams
     const Beams& beams;
     const PathWorld& optics;
 };
 
-/// A beam whose corners and middles of sides do not all end alike is divided by
-/// exact rays; one in a body of glass is shared out by its corners. What ends on an object that is smaller
-/// than a beam, and at none of these places, counts as the rest of the beam.
-FluxEnds flux_ends(const FluxQuery& query);
+/// By beam. One whose corners and middles of sides do not all end alike is divided by exact rays; one in a
+/// body of glass is shared out by its corners. An object that is smaller than a beam and at none of these
+/// places gets nothing.
+std::vector<BeamFluxEnds> flux_ends_by_rays(const FluxQuery& query);
 
 }  // namespace trilens

@@ -122,7 +122,7 @@ TEST_CASE("no light is lost on its way through a glass ball", "[laws][law][caust
     const double sine2 = 0.8 * 0.8 / (3 * 3 + 3 * 3),
                  solid_angle = 2 * 3.14159265358979 * (1 - std::sqrt(1 - sine2));
     CHECK(beams.flux_arriving().y == Approx(10 * solid_angle).epsilon(1e-3));
-    const FluxEnds ends = lit.light().flux_ends();
+    const FluxEnds ends = lit.light().flux_ends(lit.world->objects);
     const double out = ends.on_objects.y + ends.away.y;
     CHECK(out == Approx(beams.flux_arriving().y).epsilon(0.01));  // paths below a 200th are not followed
 

@@ -96,6 +96,23 @@ TEST_CASE("what ends on an object is in its map, whatever its planes and the map
     }
 }
 
+TEST_CASE("what ends on an object smaller than a beam is what its map receives", "[laws][law][caustics]") {
+    for (const double half : {0.001, 0.006, 0.03, 0.12}) {
+        ObjectMesh card = relief(1, [](double, double) { return 0; });
+        for (Vec3& point : card.points) point = 0.5 * half * point + Vec3(-0.2, 0, -0.14);
+        const auto world = lit_relief(card);
+        CausticMapRequest request;
+        request.target.kind = TargetKind::kObject;
+        request.target.object = 0;
+        request.target.width = request.target.height = 5;
+        const CausticMap map = make_caustic_map(*world, request);
+        INFO(half << ": " << map.flux_received.y << " of " << map.flux_on_objects.y);
+        REQUIRE(map.flux_received.y > 0);
+        CHECK(map.flux_on_objects.y == Approx(map.flux_received.y).epsilon(2e-3));
+        CHECK(map.flux_on_objects.y + map.flux_away.y == Approx(map.flux_in.y).epsilon(0.01));
+    }
+}
+
 TEST_CASE("light through a ball on a relief is as bright in a picture of few pixels as in one of many",
           "[laws][law][caustics]") {
     for (const Relief& one : reliefs()) {

@@ -111,7 +111,7 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
     for (const auto& light : lights) {
         const Beams& beams = light->beams();
         map.flux_in += beams.flux_arriving();
-        const FluxEnds ends = light->flux_ends();
+        const FluxEnds ends = light->flux_ends(world.objects);
         map.flux_on_objects += ends.on_objects;
         map.flux_away += ends.away;
         map.beams += beams.beams.size();

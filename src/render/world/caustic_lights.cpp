@@ -8,6 +8,7 @@
 #include "base/math/box.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "caustics/receiver_cells.h"
 #include "paths/trace/path_world.h"
 #include "render/world/blended_surfaces.h"
 #include "shade/lights/light_sample.h"
@@ -213,6 +214,16 @@ Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Rec
     Vec3 sum(0);
     for (const auto& light : lights) sum += light->irradiance(receiver);
     return sum;
+}
+
+Vec3 irradiance_on_surface(const World& world, std::size_t light, const Receiver& receiver) {
+    const CausticLights& lights = caustic_lights(world, receiver.exact);
+    const std::vector<Receiver> cells =
+        receiver_cells(receiver, {world.objects, *lights.faces, object_tracer(world)});
+    if (cells.empty()) return irradiance(lights.by_light[light], receiver);
+    Vec3 sum(0);
+    for (const Receiver& cell : cells) sum += irradiance(lights.by_light[light], cell);
+    return sum / static_cast<double>(cells.size());
 }
 
 std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const BeamGridParams& params,

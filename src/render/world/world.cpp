@@ -6,7 +6,6 @@
 
 #include "base/math/box.h"
 #include "base/util/error.h"
-#include "caustics/receiver_cells.h"
 #include "render/world/blended_surfaces.h"
 #include "render/world/volume_geometry.h"
 #include "scene/data/alpha_cut.h"
@@ -262,13 +261,7 @@ void set_up_shading(World& world) {
         };
     if (has_caustics(world))
         world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {
-            const CausticLights& lights = caustic_lights(*self, receiver.exact);
-            const std::vector<Receiver> cells =
-                receiver_cells(receiver, {self->objects, *lights.faces, object_tracer(*self)});
-            if (cells.empty()) return irradiance(lights.by_light[light], receiver);
-            Vec3 sum(0);
-            for (const Receiver& cell : cells) sum += irradiance(lights.by_light[light], cell);
-            return sum / static_cast<double>(cells.size());
+            return irradiance_on_surface(*self, light, receiver);
         };
     if (world.blended) world.blended->set_up(world.shading);
 }

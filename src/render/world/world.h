@@ -203,6 +203,10 @@ PathWorld optics_for_lights(const World& world);
 std::unique_ptr<CausticLights> make_caustic_lights(const World& world, const BeamGridParams& params,
                                                    const Progress& progress = {});
 
+/// What a light sends over optics to the receiver's footprint on the scene's objects, whatever their shape
+/// there (receiver_cells).
+Vec3 irradiance_on_surface(const World& world, std::size_t light, const Receiver& receiver);
+
 /// Gathers now, as a stage of its own, what lights send to these faces, that else is gathered when a receiver
 /// first asks for it. Throws Interrupted soon after `progress` says so.
 void gather_light(std::span<const BeamLight* const> lights, std::span<const ReceiverSide> faces,
