@@ -300,7 +300,7 @@ void bind_project(RendererClass& renderer) {
         "refine: on the exact surface; False: as the facets have it, which only \"facets\" can say.\n"
         "visibility: ask what hides each image; else visible is False.\n"
         "derivatives: of the pixel with respect to the point, for images over one optic too. A list of JSON "
-        "pointers into\nScene.json, to numbers or arrays of them: with respect to these as well, "
+        "pointers into\nscene.to_json(), to numbers or arrays of them: with respect to these as well, "
         "by_parameter.\n"
         "max_images: of a point, the strongest; 0: all. min_weight: images that carry less in every colour "
         "are "

@@ -37,7 +37,11 @@ Answer run(const SweepOptions& options, Console& console) {
     if (options.scenes.size() > 1) require_no_sweep(options.output);
     std::vector<SweepSummary> summaries;
     std::vector<LeftOutScene> left_out;
-    for (const SweepRequest& request : possible_sweeps(options, left_out, console)) {
+    const std::vector<SweepRequest> requests = possible_sweeps(options, left_out, console);
+    // The status of a gallery that is stopped early then knows the scenes that it did not come to.
+    if (requests.size() > 1)
+        for (const SweepRequest& request : requests) plan_sweep(request, sweep_talk(console));
+    for (const SweepRequest& request : requests) {
         const Stopwatch watch;
         summaries.push_back(run_sweep(request, sweep_talk(console)));
         console.note_stage("swept " + summaries.back().manifest.subject.title, watch);

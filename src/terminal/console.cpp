@@ -58,6 +58,8 @@ bool is_live_terminal() {
 void install_signal_handlers() {
     std::signal(SIGINT, handle_signal);
     std::signal(SIGTERM, handle_signal);
+    // A file that outgrows the user's limit is then a write that fails, as on a full disk.
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void stop_at_once(bool at_once) {

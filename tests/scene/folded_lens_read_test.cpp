@@ -363,6 +363,7 @@ TEST_CASE("words of lens files that cannot be followed are refused with their li
         return std::string();
     };
     CHECK(agf("CC\n") == "a.agf: has no line NM: it is no catalogue of glasses");
+    CHECK(parse_agf("\xef\xbb\xbfNM X 9 0 1.5 60\n", "a.agf").front().name == "X");
     CHECK(agf("NM\n") == "a.agf: line 1: NM needs a name");
     CHECK(agf("NM X 2\nCD 1 2 3\n") == "a.agf: line 2: CD needs a number");
     CHECK(agf("NM X 9 0 0.5 1\n").empty());

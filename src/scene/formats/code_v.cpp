@@ -29,6 +29,21 @@ constexpr std::string_view kRefused[] = {"REFL", "GRT", "HOE", "DIF", "NSS", "RE
 /// Those of them that say where a surface is.
 constexpr std::string_view kPlacing[] = {"THG", "XOD", "YOD", "ZOD", "GLB", "RET"};
 
+/// And those of rims that are not round.
+constexpr std::string_view kRims[] = {"REX", "REY", "ELX", "ELY", "GRX", "ADX", "ADY"};
+constexpr std::string_view kPlacingRead =
+    ": places are read as thicknesses and as XDE to CDE, DAR, BEN and REV";
+constexpr std::string_view kRimsRead = ": round apertures around the vertex (CIR) are read";
+constexpr std::string_view kFormsRead =
+    ": conicoids, even aspheres, cylinders (CYL), toric (YTO, XTO), biconic (AAS) and Q-type "
+    "(SPS QBF, SPS QCN) surfaces are read";
+
+/// Commands that change surfaces which were read before, or tie them to each other.
+constexpr std::string_view kEditing[] = {"SCA", "FLY", "DEL", "INS", "COP", "PIK"};
+
+/// Commands of which one number is read.
+constexpr std::string_view kOneNumber[] = {"RDY", "CUY", "THI", "RDX", "CUX", "K", "KX", "KY"};
+
 /// Shifts along x, y, z and tilts about them.
 constexpr std::string_view kTilts[] = {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
 
@@ -140,6 +155,14 @@ class SequenceReader : LensLines {
         if (words.size() > 2) row.thickness = number(words, 2);
         if (words.size() > 3) set_glass(words[3]);
         if (words.size() > 4) set_mode(words[4]);
+        check_length(words, 5);
+    }
+
+    /// Commands follow each other behind semicolons: what stands behind a command's last word would be lost.
+    void check_length(const std::vector<std::string_view>& words, std::size_t most) const {
+        if (words.size() > most)
+            fail("\"" + std::string(words[most]) + "\" behind " + std::string(words[most - 1]) +
+                 ": the next command stands behind a semicolon");
     }
 
     /// Whether a surface refracts or reflects.
@@ -168,6 +191,7 @@ class SequenceReader : LensLines {
 
     void take_coefficient(const std::vector<std::string_view>& words) {
         if (words.size() < 2) fail("SCO needs a coefficient");
+        check_length(words, 3);
         forms_.back().take_coefficient(in_capitals(words[1]), {number(words, 2), place()}, lens_.file);
     }
 
@@ -196,12 +220,16 @@ class SequenceReader : LensLines {
         const bool is_named = words.size() > 1 && names_surface(words[1]);
         if (is_among(kRefused, key) &&
             (part_ == Part::kLens || is_named || (part_ != Part::kNone && is_among(kPlacing, key))))
-            fail(key +
-                 ": conicoids, even aspheres, cylinders (CYL), toric (YTO, XTO), biconic (AAS) and Q-type " +
-                 "(SPS QBF, SPS QCN) surfaces are read");
+            fail(key + std::string(is_among(kPlacing, key) ? kPlacingRead
+                                   : is_among(kRims, key)  ? kRimsRead
+                                                           : kFormsRead));
+        if (is_among(kEditing, key) && (part_ == Part::kLens || is_named))
+            fail(key + ": surfaces are read as they are written; what changes or ties them is not done");
         const bool is_term = key.size() == 1 && key[0] >= 'A' && key[0] <= 'J' && key != "I";
         if (part_ == Part::kLens && !is_named && is_among(kAnamorphicTerms, key) && number(words, 1) != 0)
             fail(key + ": of an anamorphic asphere (AAS) its conic sections are read");
+        if (part_ == Part::kLens && (is_term || is_among(kOneNumber, key) || is_among(kTilts, key)))
+            check_length(words, is_named ? 3 : 2);
         if (is_named && (is_term || is_among(kSurfaceWords, key) || is_among(kTilts, key)))
             fail(key + " " + std::string(words[1]) +
                  ": commands of a surface are read behind it, without its name");
@@ -250,6 +278,7 @@ class SequenceReader : LensLines {
             fail("CIR " + of + ": rims (CIR, CLR, EDG), holes (HOL) and obscurations (OBS) are read");
         const double radius = number(words, of.empty() ? 1 : 2);
         if (radius < 0) fail("CIR is negative");
+        check_length(words, of.empty() ? 2 : 3);
         (of == "HOL" ? row.hole : of == "OBS" ? row.obscuration : row.side.aperture) = radius;
     }
 

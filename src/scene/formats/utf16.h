@@ -34,8 +34,10 @@ inline std::string utf8_of_utf16(const std::string& bytes) {
     return text;
 }
 
+/// Without its byte order mark.
 inline std::string text_of(const std::string& bytes) {
-    return is_utf16(bytes) ? utf8_of_utf16(bytes) : bytes;
+    if (is_utf16(bytes)) return utf8_of_utf16(bytes);
+    return bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes;
 }
 
 }  // namespace trilens

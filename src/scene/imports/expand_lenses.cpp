@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "json/schema.h"
+#include "scene/data/polygons.h"
 #include "scene/read/read_lens.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {
@@ -191,6 +193,8 @@ void expand_lenses(Json& scene, Reading& reading) {
     }
     for (std::size_t i = 0; i < lenses.size(); ++i) {
         const Node node{lenses[i], "/lenses/" + std::to_string(i), reading.file};
+        if (!similarity_factor(read_transform(node)))
+            node["transform"].fail("a lens stays exact only under a uniform scale");
         const ReadLens lens = read_lens(node, i, reading);
         Expansion expansion(node, lens, scene);
         try {
