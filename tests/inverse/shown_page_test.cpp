@@ -59,7 +59,7 @@ std::vector<unsigned char> seen_dots(const World& world, const TargetDescription
         for (int x = 0; x < kDots; ++x) middles.emplace_back(x + 0.5, y + 0.5);
     std::vector<MapImages> images(middles.size());
     FilmImagesParams params;
-    params.visibility = true;
+    params.objects_hide = true;
     find_film_images(world, params, world_places(target, proxy, middles), images);
     std::vector<unsigned char> seen;
     for (const MapImages& some : images) seen.push_back(!some.empty());

@@ -12,8 +12,9 @@ constexpr double kHalfPixel = 0.25;  // differences: from so much before to so m
 
 bool is_asked_for(const World& world, const FilmImagesParams& params, const WorldImage& image) {
     if ((!image.inside && !params.beyond_film) || image.weight == Vec3(0)) return false;
-    if (params.visibility && !image.visible) return false;
+    if (!image.visible) return false;
     if (image.path == Path::kDirect) return params.path == Path::kDirect;
+    if (!image.refined) return false;  // nobody knows how far it is off
     if (params.optic && image.optic != *params.optic) return false;
     const Path wanted =
         params.path.value_or(world.optics[image.optic].mirror ? Path::kReflect : Path::kRefract);
@@ -94,7 +95,7 @@ void find_film_images(const World& world, const FilmImagesParams& params,
     }
     ProjectRequest request;
     request.frame = params.frame;
-    request.visibility = params.visibility;
+    request.visible_at_optics = !params.objects_hide;
     request.derivatives = true;
     const std::vector<PointProjection> found = project_points(world, request, points, {{}, params.cancel});
     std::vector<Lacking> lacking;

@@ -25,14 +25,16 @@ struct FilmImagesParams {
     FrameParams frame;
     std::optional<std::size_t> optic;           // index into World::optics: the first on the way; none: any
     std::optional<Path> path;                   // none: reflected by mirrors, refracted by glass
-    bool visibility = false;                    // leave out images that objects hide
-    bool beyond_film = false;                   // keep images beyond the film's edges; with visibility none
+    bool objects_hide =
+        false;                 // what lies between the last optic (or the eye, directly) and a place hides it
+    bool beyond_film = false;  // keep images beyond the film's edges; with objects_hide none
     const std::atomic<bool>* cancel = nullptr;  // Progress::cancel
 };
 
-/// images[i] gets the images of places[i] that lie on the film (or beyond it), on that way, and carry light;
-/// none for a place that is none. Derivatives are exact where `project` has them, else differences over half
-/// a pixel of the map; zero where not even these are known. Throws Interrupted once it is cancelled.
+/// images[i] gets the images of places[i] that lie on the film (or beyond it), on that way, on the exact
+/// surfaces, which nothing before the last optic hides, and that carry light; none for a place that is none.
+/// Derivatives are exact where `project` has them, else differences over half a pixel of the map; zero where
+/// not even these are known. Throws Interrupted once it is cancelled.
 void find_film_images(const World& world, const FilmImagesParams& params,
                       std::span<const std::optional<WorldPlace>> places, std::span<MapImages> images);
 

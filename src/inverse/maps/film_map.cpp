@@ -62,7 +62,7 @@ struct MapMaker {
 
 FilmMap MapMaker::unwrap() const {
     const FilmImagesParams params{request.frame, request.optic,
-                                  request.path,  !target.has_directions() || proxy.asks_visibility(),
+                                  request.path,  !target.has_directions() || proxy.is_hidden_by_objects(),
                                   false,         progress.cancel};
     FilmMap map = empty_map(request.target.width, request.target.height, world.scene.film.width,
                             world.scene.film.height);

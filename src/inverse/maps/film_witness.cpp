@@ -46,7 +46,7 @@ class FilmWitness {
 
     MapLattice lattice_;
     int film_width_, film_height_;
-    bool visibility_, has_glass_;
+    bool has_glass_;
     std::vector<Seen> seen_;             // by cell
     std::vector<unsigned char> hidden_;  // per film pixel: its ray shows no place, and is the only one
 };
@@ -55,7 +55,6 @@ FilmWitness::FilmWitness(const World& world, const PlacesOnFilm& places, const P
     : lattice_(places.lattice),
       film_width_(world.scene.film.width),
       film_height_(world.scene.film.height),
-      visibility_(places.images.visibility),
       has_glass_(std::ranges::any_of(world.optics, [](const auto& optic) { return !optic.mirror; })),
       hidden_(static_cast<std::size_t>(film_width_) * static_cast<std::size_t>(film_height_), 0) {
     std::vector<EventWord> words{EventWord()};
@@ -134,7 +133,7 @@ bool FilmWitness::shows_nothing_else(const CellImages& cell) const {
 
 JudgePatch FilmWitness::judge() const {
     return [this, limit = kLimit * lattice_.tolerance](const CellImages& cell) {
-        return shows_all(cell, limit) && (!visibility_ || shows_nothing_else(cell));
+        return shows_all(cell, limit) && shows_nothing_else(cell);
     };
 }
 
@@ -150,7 +149,7 @@ std::optional<Vec2> witnessed_place(const ShotRay& shot, const Target& target, c
     if (!(dot(way, shot.direction) > 0) || length(cross(way, shot.direction)) > kSamePoint * far)
         return std::nullopt;
     const bool hides = shot.state == ShotState::kSeen && shot.t < far * (1 - kSamePoint);
-    if (hides && proxy.asks_visibility()) return std::nullopt;
+    if (hides && proxy.is_hidden_by_objects()) return std::nullopt;
     return place;
 }
 
@@ -158,10 +157,11 @@ std::optional<Vec2> witnessed_place(const ShotRay& shot, const Target& target, c
 
 PlacesOnFilm places_on_film(const FilmImagesParams& images, const TargetRequest& request,
                             const Target& target, const Proxy& proxy) {
-    return {images,
-            {request.target.width, request.target.height, first_cell(images.visibility), request.tolerance},
-            [&](std::span<const Vec2> places) { return world_places(target, proxy, places); },
-            [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }};
+    return {
+        images,
+        {request.target.width, request.target.height, first_cell(proxy.may_be_hidden()), request.tolerance},
+        [&](std::span<const Vec2> places) { return world_places(target, proxy, places); },
+        [&](const ShotRay& shot) { return witnessed_place(shot, target, proxy); }};
 }
 
 SampledMap map_onto_film(const World& world, const PlacesOnFilm& places, const Progress& progress) {

@@ -34,8 +34,8 @@ PlacesOnFilm places_on_film(const FilmImagesParams& images, const TargetRequest&
 
 /// Their images. One ray for each pixel of the film, through its middle, bears witness, on the way that
 /// carries most light (beside glass that mirrors, on the mirrored one, too): patches that lack, to ten times
-/// the tolerance, an image which a film pixel shows in them are divided, and with images.visibility those
-/// that have one on a film pixel which shows no place. Throws Interrupted once `progress` says so.
+/// the tolerance, an image which a film pixel shows in them are divided, and those that have one on a film
+/// pixel which shows no place. Throws Interrupted once `progress` says so.
 SampledMap map_onto_film(const World& world, const PlacesOnFilm& places, const Progress& progress = {});
 
 }  // namespace trilens

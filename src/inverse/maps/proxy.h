@@ -32,10 +32,13 @@ class Proxy {
     /// own direction where it meets nothing.
     Vec3 direction_met(const Ray& ray) const;
 
-    /// Whether what lies between the optic and the point hides it: only of the scene itself.
-    bool asks_visibility() const {
+    /// Whether objects between the last optic and the point hide it: only of the scene itself.
+    bool is_hidden_by_objects() const {
         return description_.kind == ProxyKind::kScene && world_.objects.size() > 0;
     }
+
+    /// Whether anything may lie before the last optic.
+    bool may_be_hidden() const { return world_.objects.size() > 0 || world_.optics.size() > 1; }
 
   private:
     WorldPlace far_along(const TargetPlace& place) const;

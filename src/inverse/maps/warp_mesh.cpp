@@ -57,8 +57,8 @@ struct MeshMaker {
         to_target.shoot = {asked.frame.camera, asked.word};
         to_target.optic = asked.optic;
         to_target.over_optics = !of.optics.empty();
-        to_film = {asked.frame, asked.optic, asked.path, proxy.asks_visibility()};
-        to_film.beyond_film = !to_film.visibility;
+        to_film = {asked.frame, asked.optic, asked.path, proxy.is_hidden_by_objects()};
+        to_film.beyond_film = !to_film.objects_hide;
     }
 
     /// Whether places lie in columns and rows.

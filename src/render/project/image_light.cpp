@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/box.h"
 #include "shade/optic_weights.h"
 #include "shade/shade.h"
 
@@ -72,21 +73,39 @@ Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, d
 
 namespace {
 
-/// A segment is free if what it meets lies within this share of its ends.
+/// A segment is free if what it meets lies within this share of its ends; at its start, of the size of what
+/// may hide something, where that is less: all there is lies at the start of a way to infinity.
 constexpr double kSightFreeShare = 1e-6;
+
+double size_of_all(const World& world) {
+    Box box;
+    for (const Vec3& point : world.objects.points) box.include(point);
+    double size = box.empty() ? 0 : length(box.size());
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        size = std::max(size, 2 * limit_tracer(world, i).size());
+    return size;
+}
 
 }  // namespace
 
+double OcclusionQueries::after_start(const Ray& segment) const {
+    const double size = size_.get([&] { return std::make_unique<double>(size_of_all(world_)); });
+    const double way = length(segment.direction);
+    return way > size ? kSightFreeShare * (size / way) : kSightFreeShare;
+}
+
 bool OcclusionQueries::is_free_of_objects(const Vec3& from, const Vec3& to) const {
-    return !object_tracer(world_).occluded({from, to - from}, kSightFreeShare, 1 - kSightFreeShare);
+    const Ray segment{from, to - from};
+    return !object_tracer(world_).occluded(segment, after_start(segment), 1 - kSightFreeShare);
 }
 
 bool OcclusionQueries::is_free_of_facets(const Ray& segment, std::size_t optic) const {
-    return !frame_.optics[optic].facets->tracer().occluded(segment, kSightFreeShare, 1 - kSightFreeShare);
+    return !frame_.optics[optic].facets->tracer().occluded(segment, after_start(segment),
+                                                           1 - kSightFreeShare);
 }
 
 bool OcclusionQueries::is_free_of_surface(const Ray& segment, std::size_t optic) const {
-    return !limit_tracer(world_, optic).meets(segment, kSightFreeShare, 1 - kSightFreeShare);
+    return !limit_tracer(world_, optic).meets(segment, after_start(segment), 1 - kSightFreeShare);
 }
 
 bool OcclusionQueries::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
+#include "base/util/parallel.h"
 #include "paths/trace/follow.h"
 #include "render/frame/frame.h"
 #include "render/frame/image_chain.h"
@@ -19,8 +20,8 @@
 
 namespace trilens {
 
-/// Asks for segments from place to place, world frame. A segment is free if what it meets lies at its ends.
-/// Thread-safe to read; world and frame must live longer.
+/// Asks for segments from place to place, world frame, however far. A segment is free if what it meets lies
+/// at its ends. Thread-safe to read; world and frame must live longer.
 class OcclusionQueries {
   public:
     /// `exact`: optics are their exact surfaces, else the frame's facets.
@@ -39,12 +40,14 @@ class OcclusionQueries {
     bool goes_straight(const Vec3& from, const Vec3& to, Id on_facet = kNone) const;
 
   private:
+    double after_start(const Ray& segment) const;
     bool is_free_of_facets(const Ray& segment, std::size_t optic) const;
     bool is_free_of_surface(const Ray& segment, std::size_t optic) const;
 
     const World& world_;
     const Frame& frame_;
     bool exact_;
+    Lazy<double> size_;  // of what may hide something
 };
 
 // How much of a point's light an image carries: Fresnel, tint and absorption along its whole path.

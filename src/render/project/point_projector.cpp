@@ -150,12 +150,32 @@ Vec3 PointProjector::within_reach(const ProjectedPoint& point) const {
     return length(way) <= reach_ ? point.place : middle_ + reach_ * normalize_or_zero(way);
 }
 
+/// The image of a point that continues one of a point near its way.
+std::optional<ChainImage> PointProjector::moved_image(const WorldImage& image,
+                                                      const ProjectedPoint& point) const {
+    const bool is_of_chain = chain_eye(camera_) && std::ranges::all_of(image.steps, [&](const Step& step) {
+                                 return has_own_normals(world_.scene.meshes[world_.optics[step.optic].mesh]);
+                             });
+    if (is_of_chain || point.is_direction)
+        return solve_image(world_, frame_, {image.events, image.pixel}, point);
+    if (!image.refined) return std::nullopt;
+    const auto exact =
+        refine_history_image(history_query(world_, frame_, image.steps, point.place), image.pixel);
+    if (!exact) return std::nullopt;
+    ChainImage moved;
+    moved.film.pixel = exact->pixel;
+    moved.events = exact->events;
+    moved.derivative = exact->derivative;
+    moved.is_regular = true;
+    return moved;
+}
+
 /// Moves images of a point that was searched for within reach to those of the point itself.
 void PointProjector::move_to(const ProjectedPoint& point, PointProjection& result) const {
     for (WorldImage& image : result.images) {
         if (image.path == Path::kDirect) continue;
         image.has_derivative = false;
-        const auto solved = solve_image(world_, frame_, {image.events, image.pixel}, point);
+        const std::optional<ChainImage> solved = moved_image(image, point);
         if (!solved || length(solved->film.pixel - image.pixel) > kMostMove) {
             image.refined = false;
             image.off = kUnknownOffset;
@@ -218,8 +238,7 @@ void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3&
         image.derivative = found.exact.derivative;
         image.inside = on_film(image.pixel);
         const std::vector<PathEvent>& events = image.events;
-        image.visible = request_.visibility && image.inside &&
-                        sight_.is_free_of_objects(events.back().point, point) &&
+        image.visible = asks_what_hides(image) && is_free_beyond(events.back().point, point) &&
                         sight_.sees(view->origin, events.front().point);
         for (std::size_t i = 0; i + 1 < events.size() && image.visible; ++i)
             image.visible = sight_.is_free_of_objects(events[i].point, events[i + 1].point);
@@ -244,7 +263,9 @@ void PointProjector::add_direct(const ProjectedPoint& asked, PointProjection& re
         image.inside = on_film(image.pixel);
         image.refined = true;
         image.weight = weight_of_direct(world_, frame_, {found.origin, point - found.origin}, image.length);
-        image.visible = request_.visibility && image.inside && sight_.sees(found.origin, point);
+        image.visible =
+            asks_what_hides(image) && (request_.visible_at_optics ? sight_.goes_straight(found.origin, point)
+                                                                  : sight_.sees(found.origin, point));
         if (camera_.linear) {
             // d (s / w) = (ds - (s / w) dw) / w.
             const double depth = screen_from_world(*camera_.linear, point).z;
@@ -274,7 +295,7 @@ void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result)
         image.length = found.t * length(ray.direction);
         image.weight = weight_of_direct(world_, frame_, ray, image.length);
         image.inside = on_film(image.pixel);
-        image.visible = request_.visibility && image.inside && sight_.is_free_of_objects(ray.origin, point);
+        image.visible = asks_what_hides(image) && is_free_beyond(ray.origin, point);
         result.images.push_back(image);
     }
 }
@@ -321,8 +342,8 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         image.refined = one.refined;
         image.off = one.refined ? 0 : kUnknownOffset;
         image.inside = on_film(image.pixel);
-        image.visible = request_.visibility && image.inside && is_between_planes(t) &&
-                        sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from, on_facet);
+        image.visible = asks_what_hides(image) && is_between_planes(t) && is_free_beyond(one.from, point) &&
+                        sight_.sees(eye, one.from, on_facet);
         result.images.push_back(std::move(image));
     }
 }

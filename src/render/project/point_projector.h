@@ -44,6 +44,7 @@ class PointProjector {
     void differentiate(WorldImage& image, const ProjectedPoint& point) const;
     void solve_derivative(WorldImage& image, const ProjectedPoint& point) const;
     Vec3 within_reach(const ProjectedPoint& point) const;
+    std::optional<ChainImage> moved_image(const WorldImage& image, const ProjectedPoint& point) const;
     void move_to(const ProjectedPoint& point, PointProjection& result) const;
     bool may_have_several() const;
     void keep_strongest(PointProjection& result) const;
@@ -55,6 +56,13 @@ class PointProjector {
     std::vector<OpticImage> images_on_film(const OpticPath& path, const SpecularSearch& searched) const;
     bool is_between_planes(double t) const { return t >= camera_.near_depth && t <= camera_.far_depth; }
     bool on_film(const Vec2& pixel) const;
+    bool asks_what_hides(const WorldImage& image) const {
+        return request_.visibility && (image.inside || request_.visible_at_optics);
+    }
+    /// Whether objects leave the way free from the last optic, or the eye, to the point.
+    bool is_free_beyond(const Vec3& from, const Vec3& point) const {
+        return request_.visible_at_optics || sight_.is_free_of_objects(from, point);
+    }
     /// Whether images are looked for on the exact surfaces: where the camera's law is that of one eye, or of
     /// parallel rays.
     bool searches_surfaces() const {

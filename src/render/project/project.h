@@ -81,6 +81,9 @@ struct ProjectRequest {
     // Of a point: the strongest; 0: all. Of a list that was cut `complete` is false.
     std::size_t max_images = 0;
     double min_weight = 0;  // at least 0; images that carry less in every colour are left out
+    // `visible` says only whether anything lies before the last optic, of images beyond the film, too:
+    // objects between that (or the eye, directly) and the point hide nothing then.
+    bool visible_at_optics = false;
 
     bool operator==(const ProjectRequest&) const = default;
 };
