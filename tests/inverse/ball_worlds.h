@@ -48,12 +48,10 @@ inline std::string ball_json(int width, int height, double distance, const std::
   "render": {"maxDepth": 0, "fresnel": false}})";
 }
 
-/// The same world under the smooth sky, as a latitude-longitude picture of `width` columns.
-inline std::unique_ptr<trilens::World> ball_under_sky(int width, int height, double distance, int sky_width,
-                                                      int spp = 1) {
+/// A scene under the smooth sky, as a latitude-longitude picture of `sky_width` columns.
+inline std::unique_ptr<trilens::World> world_under_sky(const std::string& json, int sky_width) {
     using namespace trilens;
-    Scene scene = load_scene_text(ball_json(width, height, distance, "", spp), SceneSource("test"), {},
-                                  {read_texture, decode_texture});
+    Scene scene = load_scene_text(json, SceneSource("test"), {}, {read_texture, decode_texture});
     auto sky = std::make_shared<Texture>();
     sky->width = sky_width, sky->height = sky_width / 2;
     for (int y = 0; y < sky->height; ++y)
@@ -66,6 +64,25 @@ inline std::unique_ptr<trilens::World> ball_under_sky(int width, int height, dou
         }
     scene.background.environment = sky;
     return make_world(std::move(scene), {});
+}
+
+inline std::unique_ptr<trilens::World> ball_under_sky(int width, int height, double distance, int sky_width,
+                                                      int spp = 1) {
+    return world_under_sky(ball_json(width, height, distance, "", spp), sky_width);
+}
+
+/// The same ball of glass that mirrors nothing.
+inline std::unique_ptr<trilens::World> glass_under_sky(int width, int height, double distance,
+                                                       int sky_width) {
+    std::string json = ball_json(width, height, distance);
+    const auto put = [&](const std::string& old, const std::string& now) {
+        json.replace(json.find(old), old.size(), now);
+    };
+    put(R"("baseColorFactor": [0.9, 0.8, 0.7], "metallicFactor": 1, "roughnessFactor": 0)",
+        R"("transmissionFactor": 1, "ior": 1.5)");
+    put(R"("maxDepth": 0)", R"("maxDepth": 1)");
+    put(R"("resolution": 8)", R"("resolution": 9)");
+    return world_under_sky(json, sky_width);
 }
 
 /// A photograph by ray tracing, as a texture.

@@ -31,6 +31,31 @@ Vec3 direction_of(int x, int y, int width) {
 
 }  // namespace
 
+TEST_CASE("a traced photograph through a glass ball unwraps to the sky behind it", "[inverse][law]") {
+    const auto world = glass_under_sky(256, 256, 4, 512);
+    for (const std::optional<Path> path : {std::optional<Path>(), std::optional(Path::kRefract)}) {
+        UnwrapRequest request = to_equirect(256);
+        request.path = path;
+        const Unwrapped made = unwrap(*world, request, {{"photo", photograph(*world), 0}});
+        double squares = 0;
+        int count = 0;
+        const auto value = [&](const char* name, int x, int y) {
+            return made.image.find(name)->floats()[static_cast<std::size_t>(y * 256 + x)];
+        };
+        for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 256; ++x) {
+                if (value("A", x, y) == 0 || value("res.min", x, y) < 0.4f) continue;
+                const Vec3 off = Vec3(value("R", x, y), value("G", x, y), value("B", x, y)) -
+                                 sky_colour(direction_of(x, y, 256));
+                squares += dot(off, off);
+                ++count;
+            }
+        INFO(count << " pixels, " << std::sqrt(squares / (3 * count)) << " off in the mean");
+        CHECK(count > 4500);
+        CHECK(std::sqrt(squares / (3 * count)) < 2e-3);
+    }
+}
+
 TEST_CASE("a traced photograph of a mirror ball unwraps to the sky that it shows", "[inverse][law][oracle]") {
     const auto world = ball_under_sky(256, 256, 4, 512);
     const Unwrapped made = unwrap(*world, to_equirect(256), {{"photo", photograph(*world), 0}});

@@ -34,13 +34,14 @@ void check_photo(const World& world, const UnwrapPhoto& photo) {
         throw UsageError("a photograph's exposure is a positive number");
 }
 
-/// Throws where an eye sees no front of a mirror: it stands inside or behind.
+/// Throws where an eye sees no front of mirrors, and there is no glass: it stands inside or behind them.
 void check_front(const World& world, const UnwrapRequest& request, const UnwrapPhoto& photo) {
     if (request.path == Path::kDirect) return;
     const CameraRays camera = make_camera_rays(world.scene, photo.camera);
     if (!camera.linear || camera.linear->parallel) return;
     for (std::size_t o = 0; o < world.optics.size(); ++o) {
-        if (!world.optics[o].mirror || (request.optic && *request.optic != o)) continue;
+        if (request.optic && *request.optic != o) continue;
+        if (!world.optics[o].mirror) return;
         const auto facets = optic_facets(world, o, world.optics[o].resolution);
         const SurfaceGrid& grid = facets->grid();
         if (std::any_of(grid.facets.begin(), grid.facets.end(), [&](const IdTriple& facet) {
@@ -225,7 +226,7 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
     Canvas canvas(request.target);
     for (std::size_t i = 0; i < photos.size(); ++i) {
         FilmImagesParams params{request.frame, request.optic, request.path,
-                                !target.has_directions() || proxy.asks_visibility()};
+                                !target.has_directions() || proxy.is_hidden_by_objects()};
         params.frame.camera = photos[i].camera;
         params.cancel = progress.cancel;
         const double share = 1 / double(photos.size());
