@@ -82,6 +82,17 @@ class PolygonSurface final : public Surface, public HasHulls, public HasCageFace
         return box;
     }
 
+    /// A mean of unit normals lies between them: in every cone, narrower than a half space, that holds them.
+    std::optional<FaceBounds> face_bounds(Id face) const override {
+        const std::array<Vec3, 3>& normals = faces_[face].normals;
+        FaceBounds bounds{*hull(face), normalize_or_zero(normals[0] + normals[1] + normals[2])};
+        for (const Vec3& normal : normals) {
+            if (!(dot(normal, bounds.normal) > 0)) return std::nullopt;
+            bounds.angle = std::max(bounds.angle, std::acos(std::min(1.0, dot(normal, bounds.normal))));
+        }
+        return bounds;
+    }
+
     SurfacePoint eval(Id face, const Vec2& uv) const override {
         const Face& here = faces_[face];
         const auto clamp = [](double x) { return x > 0 ? std::fmin(x, 1.0) : 0.0; };

@@ -287,18 +287,18 @@ std::vector<SpecularPoint> specular_points(const Surface& surface, std::span<con
     return distinct_images(std::move(images));
 }
 
-std::vector<SurfaceParameter> regular_starts(const Surface& surface, int n) {
+void append_regular_starts(const Surface& surface, Id face, int n, std::vector<SurfaceParameter>& starts) {
     TRILENS_CHECK(n > 0, "a domain is divided into one cell at least");
+    const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
+    const double middle = triangle ? 1.0 / 3 : 0.5;
+    for (int row = 0; row < n; ++row)
+        for (int column = 0; column < (triangle ? n - row : n); ++column)
+            starts.push_back({face, (Vec2(column, row) + middle) / static_cast<double>(n)});
+}
+
+std::vector<SurfaceParameter> regular_starts(const Surface& surface, int n) {
     std::vector<SurfaceParameter> starts;
-    for (Id face = 0; face < surface.face_count(); ++face) {
-        const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
-        const double middle = triangle ? 1.0 / 3 : 0.5;
-        for (int row = 0; row < n; ++row) {
-            for (int column = 0; column < (triangle ? n - row : n); ++column) {
-                starts.push_back({face, (Vec2(column, row) + middle) / static_cast<double>(n)});
-            }
-        }
-    }
+    for (Id face = 0; face < surface.face_count(); ++face) append_regular_starts(surface, face, n, starts);
     return starts;
 }
 

@@ -69,6 +69,8 @@ std::vector<SpecularPoint> specular_points(const Surface& surface, std::span<con
 /// The middles of an n x n division of every face's domain (of n(n + 1)/2 of the cells for triangles), face
 /// by face.
 std::vector<SurfaceParameter> regular_starts(const Surface& surface, int n);
+/// Those of one face.
+void append_regular_starts(const Surface& surface, Id face, int n, std::vector<SurfaceParameter>& starts);
 
 /// Images of one optic, each once, by ascending t: two are one when the camera sees them within kSamePixels
 /// pixels of each other on one crossing of the surface (the same side, positions alike to kSameCrossing of

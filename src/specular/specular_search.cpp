@@ -2,14 +2,17 @@
 #include "specular/specular_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "base/util/check.h"
+#include "base/util/parallel.h"
 #include "specular/batch_search.h"
 #include "specular/branch_and_bound.h"
 #include "specular/cell_bvh.h"
+#include "specular/cones/normal_cones.h"
 #include "specular/sphere_search.h"
 
 namespace trilens {
@@ -22,6 +25,12 @@ struct SpecularSearcher::Impl {
     CellBvh cells;
     std::mutex guard;
     std::vector<std::unique_ptr<BatchSearch>> idle;  // batches of earlier calls
+    Lazy<NormalCones> made_cones;
+
+    /// Of a surface whose normals are not along du x dv.
+    const NormalCones& cones() {
+        return made_cones.get([&] { return std::make_unique<NormalCones>(surface); });
+    }
 
     std::vector<SpecularSearch> find_in_cells(const SpecularQuery& query, std::span<const Vec3> points,
                                               const SearchLimits& limits);
@@ -82,7 +91,7 @@ std::vector<SpecularSearch> SpecularSearcher::Impl::find_on_sphere(const SphereS
 }
 
 SpecularSearcher::SpecularSearcher(const Surface& surface, Occluder first_hit)
-    : impl_(new Impl{surface, CellBvh(surface, std::move(first_hit)), {}, {}}) {}
+    : impl_(new Impl{surface, CellBvh(surface, std::move(first_hit)), {}, {}, {}}) {}
 
 SpecularSearcher::~SpecularSearcher() = default;
 
@@ -113,6 +122,33 @@ SpecularSearch together(SpecularSearch search, const SpecularSearch& other) {
 
 }  // namespace
 
+namespace {
+
+/// The law's own tolerance, and what an image on a face's border strays.
+constexpr double kRoundingAngle = 1e-6;
+
+/// How far a unit direction to a ball's points strays from the one to its centre; 2 inside of the ball.
+double stray_of(double radius, double distance) {
+    return radius < distance ? 2 * std::sin(0.5 * std::asin(radius / distance)) : 2;
+}
+
+/// Whether a normal within the bounds may be along h = n1 e + n2 x of a point within them: h lies in a ball
+/// about that of the box's centre, and so, where the ball does not hold the origin, in a cone.
+bool may_hold_law(const FaceBounds& bounds, const SpecularQuery& query) {
+    const Vec3 centre = 0.5 * (bounds.box.low + bounds.box.high);
+    const double radius = 0.5 * length(bounds.box.size());
+    const SpecularPath path = specular_path(query, centre);
+    const PathIndices n = path_indices(query);
+    const double stray =
+        n.eye * stray_of(radius, path.eye_distance) + n.point * stray_of(radius, path.point_distance);
+    const double bend = length(path.bend);
+    if (!(stray < bend)) return true;
+    const double off = std::acos(std::min(1.0, std::fabs(dot(bounds.normal, path.bend)) / bend));
+    return off <= bounds.angle + std::asin(stray / bend) + kRoundingAngle;
+}
+
+}  // namespace
+
 SpecularSearch SpecularSearcher::find(const SpecularQuery& asked, const SearchLimits& limits) const {
     check(asked, limits);
     SpecularQuery query = asked;
@@ -126,7 +162,16 @@ SpecularSearch SpecularSearcher::find(const SpecularQuery& asked, const SearchLi
         return BranchAndBound(impl_->surface, *impl_->cells.bounder(), tree, limits).run(query);
     }
     SpecularSearch search;
-    search.images = specular_points(impl_->surface, regular_starts(impl_->surface, limits.starts), query);
+    std::vector<SurfaceParameter> starts;
+    if (query.own_normals) {
+        starts = regular_starts(impl_->surface, limits.starts);
+    } else {
+        const auto may = [&](const FaceBounds& bounds) { return may_hold_law(bounds, query); };
+        for (const Id face : impl_->cones().faces_where(may))
+            append_regular_starts(impl_->surface, face, limits.starts, starts);
+    }
+    search.cells = starts.size();
+    search.images = specular_points(impl_->surface, starts, query);
     return search;
 }
 

@@ -39,8 +39,8 @@ struct SpecularSearch {
 /// listed, too. "Proven" is up to rounding: radii hold the rounding of evaluation, but the arithmetic on them
 /// does not round outward.
 ///
-/// Surfaces that give no bounds and queries with overridden normals are searched from regular starts; such a
-/// list is never complete.
+/// Surfaces that give no bounds and queries with overridden normals are searched from regular starts, of
+/// overridden normals on the faces that NormalCones does not exclude; such a list is never complete.
 class SpecularSearcher {
   public:
     /// With `first_hit`, of rays with the surface, what a closed surface surely hides from the query's eye is

@@ -48,6 +48,11 @@ TEST_CASE("a surface that is not subdivided lies on its triangles and has their 
             // Of an octahedron the interpolated normal is the direction of the point itself.
             CHECK(length(point.normal - normalize_or_zero(point.position)) < 1e-12);
             CHECK(dot(cross(point.du, point.dv), point.normal) > 0);
+            const std::optional<FaceBounds> bounds = surface->face_bounds(face);
+            REQUIRE(bounds);
+            CHECK(bounds->box.holds(point.position));
+            CHECK(dot(bounds->normal, point.normal) >= std::cos(bounds->angle) - 1e-12);
+            CHECK(bounds->angle < 1);
         }
     // Closed: every corner and side is shared, and a grid of it has no point twice.
     for (Id face = 0; face < 8; ++face)

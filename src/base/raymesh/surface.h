@@ -80,6 +80,14 @@ struct SurfaceBounds {
     bool is_finest = false;    // boxes inside this one have no better bounds
 };
 
+/// Where a whole face lies, and its unit normals, whatever they come from: no farther than `angle` (radians)
+/// from `normal`.
+struct FaceBounds {
+    Box box;
+    Vec3 normal{0};  // unit
+    double angle = 0;
+};
+
 /// Bounds of a surface, each good to rounding and shrinking at least in proportion to the box wherever the
 /// surface is smooth. Thread-safe to read; refers to its surface, which must live longer.
 class SurfaceBounder {
@@ -131,6 +139,9 @@ class Surface {
 
     /// Bytes that it holds now, but for the allocator's own and what does not grow with the surface.
     virtual std::size_t bytes_held() const { return 0; }
+
+    /// None where nothing is known of the face.
+    virtual std::optional<FaceBounds> face_bounds(Id /*face*/) const { return std::nullopt; }
 
     /// What bounds this surface's parts, or null where none are known. Prepares all faces, so ask once.
     virtual std::unique_ptr<const SurfaceBounder> make_bounder() const { return nullptr; }
