@@ -45,6 +45,28 @@ TEST_CASE("a file of points may begin with a header and names the line that is n
     CHECK(refuses("line 1"));
     replace_text_file(file, "x,y,z\n");
     CHECK(refuses("no points"));
+    // Nor are numbers that something else separates, whether others follow or not.
+    for (const char* first : {"0;1;-3", "0 1 -3", "0\t1\t-3", "0,5;1,2;-3"})
+        for (const char* rest : {"\n0,1,-2\n", "\r\n", ""}) {
+            replace_text_file(file, std::string(first) + rest);
+            INFO(first);
+            CHECK(refuses("line 1"));
+            CHECK(refuses("commas separate numbers"));
+        }
+    for (const char* header : {"z,y,x", "X, Z, Y", "\"y\",\"x\",\"z\"", "id,x,y,z", "y"}) {
+        replace_text_file(file, std::string(header) + "\n1,2,3\n");
+        INFO(header);
+        CHECK(refuses("line 1"));
+        CHECK(refuses("in this order"));
+    }
+    for (const char* header : {"X,Y,Z", "a,b,c", "easting,northing,height", "x,y,z,", "point 1, 2nd, 3rd"}) {
+        replace_text_file(file, std::string(header) + "\n1,2,3\n");
+        INFO(header);
+        CHECK(read_points(file) == std::vector<Vec3>{{1, 2, 3}});
+    }
+    CHECK_THROWS_WITH(parse_numbers("y,x\n1,2\n", "places", {2, "x,y", "places"}),
+                      ContainsSubstring("names the columns y,x"));
+    CHECK(parse_numbers("x,y\n1,2\n", "places", {2, "x,y", "places"}) == std::vector<double>{1, 2});
     CHECK_THROWS_AS(read_points(folder), InputError);
     CHECK_THROWS_AS(read_points(folder + "/none.csv"), InputError);
 }

@@ -17,21 +17,58 @@
 namespace trilens {
 namespace {
 
+/// What stands between separators, without quotes and in small letters; blanks are left out, or separate.
+std::vector<std::string> fields_of(std::string_view line, std::string_view separators) {
+    std::vector<std::string> fields(1);
+    for (const char letter : line) {
+        if (separators.find(letter) != std::string_view::npos)
+            fields.emplace_back();
+        else if (!std::isspace(static_cast<unsigned char>(letter)) && letter != '"' && letter != '\'')
+            fields.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    }
+    return fields;
+}
+
+bool is_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    return !text.empty() &&
+           std::from_chars(text.data(), text.data() + text.size(), value).ptr == text.data() + text.size();
+}
+
+/// Whether a line holds numbers alone, whatever separates them.
+bool has_only_numbers(std::string_view line) {
+    std::vector<std::string> fields = fields_of(line, ",; \t\r|");
+    std::erase(fields, "");
+    return !fields.empty() && std::ranges::all_of(fields, is_number);
+}
+
 /// Whether a line that is no point holds only words.
 bool is_header(std::string_view line) {
-    std::string field;
-    for (const char letter : std::string(line) + ",") {
-        if (letter != ',') {
-            if (!std::isspace(static_cast<unsigned char>(letter)) && letter != '"' && letter != '\'')
-                field += letter;
-            continue;
-        }
-        double value = 0;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-        if (!field.empty() && end == field.data() + field.size()) return false;
-        field.clear();
-    }
-    return true;
+    return std::ranges::none_of(fields_of(line, ","), is_number) && !has_only_numbers(line);
+}
+
+/// Whether a header names a column of the form at another's place.
+bool has_other_order(std::string_view line, const LineForm& form) {
+    const std::vector<std::string> columns = fields_of(form.names, ","), fields = fields_of(line, ",");
+    if (columns.size() != form.numbers) return false;  // the form says what they are in other words
+    for (std::size_t k = 0; k < fields.size(); ++k)
+        if ((k >= columns.size() || fields[k] != columns[k]) && std::ranges::count(columns, fields[k]) > 0)
+            return true;
+    return false;
+}
+
+/// What is said of a line that is none of the form.
+std::string complaint_of(std::string_view line, const LineForm& form) {
+    while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    const std::string text(line);
+    if (is_header(line) && has_other_order(line, form))
+        return "names the columns " + text + ", and they are " + form.names + ", in this order";
+    const std::string separators =
+        has_only_numbers(line) && line.find_first_of("; \t|") != std::string_view::npos
+            ? ": commas separate numbers"
+            : "";
+    return "needs " + form.names + " within 1e30, not \"" + text + "\"" + separators;
 }
 
 /// Adds the `count` numbers that a text consists of to `numbers`; false, and then nothing is said of what was
@@ -57,7 +94,7 @@ bool add_numbers(std::string_view text, std::size_t count, std::vector<double>& 
 
 /// Some lines of a text: their numbers, as far as the first line that holds other things.
 struct Piece {
-    std::size_t per_line = 3;
+    const LineForm& form;
     std::vector<double> numbers = {};
     std::size_t lines = 0;
     std::optional<std::string_view> bad = {};  // the last line that was looked at
@@ -67,9 +104,9 @@ struct Piece {
         if (is_first && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // a byte order mark
         if (line.find_first_not_of(" \t\r") == std::string_view::npos || line[0] == '#') return;
         const std::size_t held = numbers.size();
-        if (add_numbers(line, per_line, numbers)) return;
+        if (add_numbers(line, form.numbers, numbers)) return;
         numbers.resize(held);
-        if (!is_first || !is_header(line)) bad = line;
+        if (!is_first || !is_header(line) || has_other_order(line, form)) bad = line;
     }
     void take_lines(std::string_view text, bool is_first) {
         while (!text.empty() && !bad) {
@@ -129,7 +166,7 @@ std::size_t numbers_in_first_point(std::string_view text) {
 }  // namespace
 
 std::vector<double> parse_numbers(const std::string& text, const std::string& name, const LineForm& form) {
-    std::vector<Piece> pieces(text.size() / kPiece + 1, Piece{.per_line = form.numbers});
+    std::vector<Piece> pieces(text.size() / kPiece + 1, Piece{.form = form});
     parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const std::size_t begin = line_at(text, i * kPiece), end = line_at(text, (i + 1) * kPiece);
@@ -142,8 +179,7 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& na
         lines += piece.lines;
         numbers.insert(numbers.end(), piece.numbers.begin(), piece.numbers.end());
         if (piece.bad)
-            throw InputError(name, "line " + std::to_string(lines),
-                             "needs " + form.names + " within 1e30, not \"" + std::string(*piece.bad) + "\"");
+            throw InputError(name, "line " + std::to_string(lines), complaint_of(*piece.bad, form));
     }
     if (numbers.empty()) throw InputError(name, "", "holds no " + form.what);
     return numbers;

@@ -18,10 +18,12 @@ std::vector<Vec3> parse_points(const std::string& text, const std::string& name)
 
 /// The points of a file: of a PLY its vertices, of a text one x,y,z per line; empty lines, lines that begin
 /// with # and a first line of words (a header) are passed over. Throws InputError with the file and the line
-/// of the first that is no point, or where there is none.
+/// of the first that is no point, for a header that names the columns in another order, or where there is no
+/// point.
 std::vector<Vec3> read_points(const std::string& file);
 
-/// What a line of a table holds, as messages name it: "x,y,z".
+/// What a line of a table holds, as messages name it: "x,y,z". Where `names` are as many words between commas
+/// as there are numbers, a header with one of them at another's place is refused.
 struct LineForm {
     std::size_t numbers = 3;
     std::string names = "x,y,z";
