@@ -101,7 +101,7 @@ std::vector<Example> examples_of(const std::string& called) {
          {{"trilens unwrap ball.json photo.jpg --to equirect:2048x1024 -o panorama.exr",
            "a mirror ball's photograph into a panorama"},
           {"trilens unwrap room.json photo.exr --to floor:1024x1024 -o floor.exr",
-           "what it shows of an object, as that object's texture"}}},
+           "what it shows of a flat floor, made straight: its bounding rectangle from its front"}}},
         {"trilens map",
          {{"trilens map ball.json --to equirect:4096x2048 -o unwrap.exr",
            "an STMap that unwraps photographs: oiiotool photo.exr --crop 4096x2048+0+0 unwrap.exr --st_warp "
@@ -110,7 +110,8 @@ std::vector<Example> examples_of(const std::string& called) {
            "a projector's warp mesh over a mirror ball into a dome"}}},
         {"trilens caustic",
          {{"trilens caustic scene.json --light 0 --onto floor:1024x1024 -o caustic.exr",
-           "what a light brings over mirrors and through glass to the floor, per pixel of its texture"}}},
+           "what a light brings over mirrors and through glass to a flat floor, per pixel of its "
+           "rectangle"}}},
         {"trilens bake",
          {{"trilens bake cornell.json -o baked.json", "a scene whose objects keep the light of the room"},
           {"trilens bake cornell.json --keep-lights --plot convergence.svg -o baked.json",
