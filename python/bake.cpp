@@ -47,7 +47,7 @@ void bind_bake(RendererClass& renderer) {
         [](const Renderer& self, const std::string& solver, const std::string& form_factors, int hemicube,
            int rays, double tolerance, double patch_size, double smallest_size, double contrast,
            std::size_t max_elements, bool keep_lights, const std::optional<std::filesystem::path>& file,
-           const py::object& progress) {
+           const py::object& progress, const py::object& warn) {
             BakeRequest request;
             request.solver = require_named<RadiositySolver>("solver", solver);
             request.form_factors = require_named<FormFactorMethod>("kind of form factors", form_factors);
@@ -59,13 +59,14 @@ void bind_bake(RendererClass& renderer) {
             request.contrast = contrast;
             request.most_elements = max_elements;
             request.keeps_lights = keep_lights;
-            PythonCall call(progress);
+            PythonCall call(progress, warn);
             Bake bake = call.run([&] {
                 Bake made = bake_light(self, request, call.progress("bake"));
                 if (file)
                     replace_text_file(
                         file->string(),
                         scene_document(made.scene, std::filesystem::absolute(*file).parent_path().string()));
+                call.tell_all(made.report.warnings);
                 return made;
             });
             return py::make_tuple(std::move(bake.scene), report_dict(bake.report));
@@ -75,7 +76,7 @@ void bind_bake(RendererClass& renderer) {
         py::arg("tolerance") = usual.tolerance, py::arg("patch_size") = usual.patch_size,
         py::arg("smallest_size") = usual.smallest_size, py::arg("contrast") = usual.contrast,
         py::arg("max_elements") = usual.most_elements, py::arg("keep_lights") = false,
-        py::arg("file") = py::none(), py::arg("progress") = py::none(),
+        py::arg("file") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Radiosity: the light that matt objects send to one another, at the corners of their triangles.\n\n"
         "solver: \"progressive\", the brightest patch shoots, or \"gauss-seidel\", all gather.\n"
         "form_factors: \"hemicube\", drawn, or \"rays\", traced: the truth.\n"
@@ -87,7 +88,7 @@ void bind_bake(RendererClass& renderer) {
         "max_elements: halving stops before there are more.\n"
         "keep_lights: the lights go on shining; only what comes after is baked.\n"
         "file: the scene is written there, too: .json.\n"
-        "progress: as in draw.\n"
+        "progress: as in draw. warn: as in load_scene.\n"
         "Returns (scene, report): the Scene with its light, and a dict: triangles, patches, elements, "
         "vertices, "
         "flat, coarse, passes,\npower (emitted, from_lights, absorbed, blocked, escaped, unshot: three "

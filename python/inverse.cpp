@@ -85,6 +85,7 @@ PythonFit fit(const Scene& scene, const FitArguments& arguments, PythonCall& cal
         static_cast<FitResult&>(found) =
             fit_scene(scene, arguments.pairs, arguments.request, call.progress("fit"));
         found.scene = parse_scene(found.document, scene.folder, {}, "fitted");
+        call.tell_all(found.warnings);
         return found;
     });
 }
@@ -166,7 +167,7 @@ void bind_fit(py::module_& module) {
         [](const Scene& scene, const Doubles& pixels, const Doubles& points,
            const std::vector<std::string>& free, const py::object& sigma, double huber,
            const py::dict& priors, const std::string& path, const std::string& match,
-           const py::object& camera, int max_iterations, const py::object& progress) {
+           const py::object& camera, int max_iterations, const py::object& progress, const py::object& warn) {
             FitArguments arguments{pairs_of(pixels, points, sigma, camera), {}};
             FitRequest& request = arguments.request;
             request.free = free;
@@ -178,13 +179,13 @@ void bind_fit(py::module_& module) {
             request.match = match_of(match);
             if (max_iterations < 1) throw UsageError("max_iterations is 1 or more");
             request.most_iterations = max_iterations;
-            PythonCall call(progress, py::none());
+            PythonCall call(progress, warn);
             return fit(scene, arguments, call);
         },
         py::arg("scene"), py::arg("pixels"), py::arg("points"), py::arg("free"), py::kw_only(),
         py::arg("sigma") = 0.5, py::arg("huber") = 4.0, py::arg("priors") = py::dict(), py::arg("path") = "",
         py::arg("match") = "ray", py::arg("camera") = py::none(), py::arg("max_iterations") = 100,
-        py::arg("progress") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Parameters of a scene from pixels and the world points that are seen there, over mirrors and "
         "through\n"
         "glass: Levenberg and Marquardt's method on the points' exact images.\n\n"
@@ -199,6 +200,8 @@ void bind_fit(py::module_& module) {
         "match: \"ray\" follows the pixels' rays; \"nearest\" begins with the point's image nearest to its "
         "pixel.\n"
         "camera: name of one or of N; None: the scene's own.\n"
+        "warn: called with each of the result's warnings; None: the warnings module tells "
+        "(TrilensWarning).\n"
         "Raises InputError for pointers that name no number and too few pairs, UsageError for shapes, names "
         "and\n"
         "paths that there are not, ComputationError where every pair is lost.");
@@ -342,7 +345,8 @@ void bind_design(py::module_& module) {
     module.def(
         "design_mirror",
         [](const py::object& wish, const py::object& target, bool directions, bool compare_sphere,
-           const std::string& method, int max_iterations, const py::object& progress) {
+           const std::string& method, int max_iterations, const py::object& progress,
+           const py::object& warn) {
             if (method != "gauss-newton" && method != "picard")
                 throw UsageError("method is \"gauss-newton\" or \"picard\", not \"" + method + "\"");
             if (max_iterations < 1) throw UsageError("max_iterations is 1 or more");
@@ -354,14 +358,17 @@ void bind_design(py::module_& module) {
             const DesignRequest request{
                 method == "picard" ? DesignMethod::kPicard : DesignMethod::kGaussNewton, compare_sphere,
                 max_iterations};
-            PythonCall call(progress, py::none());
-            static_cast<Design&>(made) =
-                call.run([&] { return design_mirror(made.wish, request, call.progress("design")); });
+            PythonCall call(progress, warn);
+            static_cast<Design&>(made) = call.run([&] {
+                Design found = design_mirror(made.wish, request, call.progress("design"));
+                call.tell_all(found.warnings);
+                return found;
+            });
             return made;
         },
         py::arg("wish"), py::arg("target") = py::none(), py::kw_only(), py::arg("directions") = false,
         py::arg("compare_sphere") = false, py::arg("method") = "gauss-newton", py::arg("max_iterations") = 20,
-        py::arg("progress") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "The freeform mirror whose reflections come nearest to a wish, or where the wish has \"lens\" the\n"
         "front of a lens.\n\n"
         "wish: a wish file, or a dict of the same form (wish_schema).\n"
@@ -370,6 +377,8 @@ void bind_design(py::module_& module) {
         "  sees it, rows from below, the first and last at its rims: world points, or with `directions` "
         "directions.\n"
         "compare_sphere: find the best sphere too.\n"
+        "warn: called with each of the design's warnings; None: the warnings module tells "
+        "(TrilensWarning).\n"
         "method: \"gauss-newton\" on the rays that leave, or \"picard\", linear on slopes.\n"
         "Raises InputError for wishes that no mirror or lens can have, ComputationError where no surface is "
         "found.");

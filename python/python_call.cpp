@@ -28,6 +28,10 @@ Warn PythonCall::warner() {
     return [this](const std::string& message) { tell(message); };
 }
 
+void PythonCall::tell_all(const std::vector<std::string>& messages) {
+    for (const std::string& message : messages) tell(message);
+}
+
 void PythonCall::report(double done, const std::string& job) {
     const py::gil_scoped_acquire acquired;
     if (raised_) return;

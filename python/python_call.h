@@ -4,7 +4,9 @@
 #include <atomic>
 #include <exception>
 #include <optional>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include "bindings.h"
 
@@ -24,6 +26,8 @@ class PythonCall {
     /// stops the work.
     Progress progress(const std::string& job);
     Warn warner();
+    /// Tells each of them; called by the work, in `run`.
+    void tell_all(const std::vector<std::string>& messages);
 
     /// Does the work without the GIL and returns its result. What Python raised meanwhile goes before what
     /// the work threw.

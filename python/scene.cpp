@@ -5,6 +5,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
 
 #include "python_call.h"
 #include "scene_camera.h"
@@ -70,8 +72,7 @@ py::object json_value(const std::string& text) {
 
 void tell_warnings(const Scene& scene, PythonCall& call) {
     call.run([&] {
-        const Warn warn = call.warner();
-        for (const std::string& message : scene.warnings) warn(message);
+        call.tell_all(scene.warnings);
         return true;
     });
 }
@@ -262,10 +263,16 @@ void bind_scene(py::module_& module) {
                       "The scene as JSON on one line, after overrides, as image headers carry it.")
         .def(
             "to_json",
-            [](const Scene& scene, const py::object& indent) {
-                return json_text(json_value(scene.resolved), indent);
+            [](const Scene& scene, const py::object& indent,
+               const std::optional<std::filesystem::path>& folder) {
+                const std::string text =
+                    folder ? scene_document(scene, std::filesystem::absolute(*folder).string())
+                           : scene.resolved;
+                return json_text(json_value(text), indent);
             },
-            py::arg("indent") = 2, "The resolved scene as JSON text.")
+            py::arg("indent") = 2, py::arg("folder") = py::none(),
+            "The resolved scene as JSON text, its files named from `folder`: where the text will lie; None: "
+            "from the scene's own.")
         .def(
             "to_dict", [](const Scene& scene) { return json_value(scene.resolved); },
             "The resolved scene as a new dict, which parse_scene takes.")

@@ -175,17 +175,18 @@ void bind_caustic(RendererClass& renderer) {
     renderer.def(
         "caustic",
         [](const Renderer& self, const std::string& onto, int light, bool back, bool exact, double tolerance,
-           const std::optional<PhotoFile>& file, const py::object& progress) {
+           const std::optional<PhotoFile>& file, const py::object& progress, const py::object& warn) {
             CausticMapRequest request;
             request.light = light < 0 ? self.scene().lights.size() : static_cast<std::size_t>(light);
             request.target = parse_target(onto, self.scene());
             request.back = back;
             request.exact = exact;
             request.tolerance = tolerance;
-            PythonCall call(progress);
+            PythonCall call(progress, warn);
             const CausticMap map = call.run([&] {
                 CausticMap made = make_caustic_map(self, request, call.progress("caustic"));
                 if (file) write_image(file->string(), image_of(made));
+                call.tell_all(made.warnings);
                 return made;
             });
             std::vector<double> light_there;
@@ -205,7 +206,7 @@ void bind_caustic(RendererClass& renderer) {
         },
         py::arg("onto"), py::arg("light") = 0, py::kw_only(), py::arg("back") = false,
         py::arg("exact") = false, py::arg("tolerance") = CausticMapRequest().tolerance,
-        py::arg("file") = py::none(), py::arg("progress") = py::none(),
+        py::arg("file") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "The light that comes over mirrors and through glass onto an object or a plane.\n\n"
         "onto: \"NAME:WxH\", an object, or \"plane:...\", as in unwrap.\n"
         "light: index of the scene's light, whether it has caustics or not.\n"
@@ -213,7 +214,7 @@ void bind_caustic(RendererClass& renderer) {
         "exact: the truth, as trace has it: by exact rays at every pixel, however long it takes.\n"
         "tolerance: how far light may fall from its place, as a share of the scene's size.\n"
         "file: written too: .exr.\n"
-        "progress: as in draw.\n"
+        "progress: as in draw. warn: as in load_scene.\n"
         "Returns a dict: irradiance (height, width, 3), linear Rec.709, the mean of each pixel; flux_in, "
         "from "
         "the light to the\noptics, flux_on_objects and flux_away, from there, and flux_received, in the map, "

@@ -69,13 +69,11 @@ std::vector<std::string> pointers_of(const std::vector<std::string>& given) {
     return pointers;
 }
 
-void warn_of_folder(const std::string& output, const Scene& scene, Console& console) {
-    namespace fs = std::filesystem;
-    if (is_standard_stream(output) || scene.files.size() <= 1) return;
-    const std::string folder = fs::absolute(output).parent_path().lexically_normal().string();
-    if (fs::path(folder) != fs::path(scene.folder).lexically_normal())
-        console.warn(output +
-                     " lies in another folder than the scene: relative names of files in it start there");
+/// The fitted scene as a file that lies where the output does.
+std::string document_for(const std::string& output, const Scene& scene, const FitResult& result) {
+    const std::string folder =
+        is_standard_stream(output) ? scene.folder : std::filesystem::absolute(output).parent_path().string();
+    return scene_document(parse_scene(result.document, scene.folder, {}, "fitted"), folder);
 }
 
 Answer run(const CalibrationOptions& options, Console& console) {
@@ -97,7 +95,6 @@ Answer run(const CalibrationOptions& options, Console& console) {
             : read_correspondences(options.points);
     check_scene_output(options.output, console);
     if (!options.report.empty()) check_output(options.report, console);
-    warn_of_folder(options.output, scene, console);
 
     const Stopwatch watch;
     const FitResult result = fit_scene(scene, pairs, request, console.progress("fit"));
@@ -120,7 +117,7 @@ Answer run(const CalibrationOptions& options, Console& console) {
         return answer;
     }
     if (!result.converged) console.warn("the fit has not come to rest after all its iterations");
-    write_output(options.output, result.document, console);
+    write_output(options.output, document_for(options.output, scene, result), console);
     answer.fields["output"] = options.output;
     return answer;
 }

@@ -301,21 +301,30 @@ TEST_CASE("what cannot be fitted is refused with its place", "[inverse][bad-inpu
     const Scene scene = parse_scene(trilens_test::ball_scene());
     std::vector<Correspondence> pairs = make_pairs(scene, 6, "R");
     FitRequest request;
-    const auto refusal = [&](const std::string& pointer) {
+    const auto refusal_in = [&](const Scene& in, const std::string& pointer) {
         request.free = {pointer};
         try {
-            fit_scene(scene, pairs, request);
+            fit_scene(in, pairs, request);
         } catch (const InputError& error) {
             return std::string(error.what());
         }
         return std::string("accepted");
     };
+    const auto refusal = [&](const std::string& pointer) { return refusal_in(scene, pointer); };
     CHECK(refusal("/meshes/0/name").find("no number") != std::string::npos);
     CHECK(refusal("/meshes/0/primitive").find("no number") != std::string::npos);
     CHECK(refusal("/meshes/nobody/primitive/radius").find("no entry 'nobody'") != std::string::npos);
     CHECK(refusal("/meshes/0/primitive/radios").find("radios") != std::string::npos);
     CHECK(refusal("/film/width").find("no number of a camera") != std::string::npos);
     CHECK(refusal("meshes").find("must begin with '/'") != std::string::npos);
+
+    const auto refusal_with = [&](const std::string& json, const SceneOverride& change) {
+        return refusal_in(parse_scene(json, "", std::span(&change, 1)), "/meshes/0/transform/translate");
+    };
+    CHECK(refusal_with(trilens_test::saddle_scene(), {"/meshes/0/subdivisionScheme", "\"none\""})
+              .find("/meshes/0/subdivisionScheme: \"none\"") != std::string::npos);
+    CHECK(refusal_with(trilens_test::ball_scene(), {"/meshes/0/normals", R"({"type": "noise"})"})
+              .find("/meshes/0/normals: ") != std::string::npos);
 
     request.free = {"/meshes/0/primitive/center", "/meshes/0/primitive/radius"};
     const std::vector<Correspondence> one{pairs[0]};

@@ -72,6 +72,25 @@ TEST_CASE("trilens fit writes the fitted scene, its answer and its page, or says
     CHECK_FALSE(fs::exists(folder + "/fitted.json"));
 }
 
+TEST_CASE("a fitted scene names its files from where it lies", "[cli][inverse]") {
+    const std::string folder = scratch_dir("cli_fit_elsewhere");
+    fs::create_directories(folder + "/given");
+    fs::create_directories(folder + "/out/deep");
+    write_file(folder, "wall.obj", "v -3 0 -4\nv 3 0 -4\nv 3 3 -4\nf 1 2 3\n");
+    std::string json = ball_scene();
+    json.replace(json.rfind("]}"), 2, R"(, {"name": "wall", "role": "object", "file": "../wall.obj"}]})");
+    const std::string scene = write_file(folder + "/given", "scene.json", json);
+    const std::string pairs = write_file(folder, "pairs.csv", pairs_text(20));
+    const std::string fitted = folder + "/out/deep/fitted.json";
+    REQUIRE(run_trilens("fit " + scene + " --points " + pairs + " --free /meshes/ball/primitive/radius -o " +
+                        fitted)
+                .exit_code == 0);
+    CHECK(trilens::Json::parse(bytes_of(fitted))["meshes"][1]["file"] == "../../wall.obj");
+    const CommandRun loaded = run_trilens("scene validate " + fitted);
+    INFO(loaded.err);
+    CHECK(loaded.exit_code == 0);
+}
+
 TEST_CASE("trilens design writes a scene that draws, and a closed body", "[cli][inverse]") {
     const std::string folder = scratch_dir("cli_design");
     const std::string wish = write_file(folder, "wish.json", run_trilens("design --example").out);

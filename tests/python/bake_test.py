@@ -13,7 +13,9 @@ COARSE = {"patch_size": 0.2, "contrast": 5.0, "hemicube": 32}
 
 def test_baked_light_is_the_files_and_reaches_what_no_lamp_does(tmp_path):
     scene = trilens.load_scene(SCENE, SMALL)
-    baked, report = trilens.Renderer(scene).bake(file=tmp_path / "baked.json", **COARSE)
+    told = []
+    baked, report = trilens.Renderer(scene).bake(file=tmp_path / "baked.json", **COARSE, warn=told.append)
+    assert told == report["warnings"] and any("mirrors stop the light" in one for one in told)
     assert trilens.Renderer(trilens.load_scene(tmp_path / "baked.json")).digest() == trilens.Renderer(baked).digest()
     before, after = (trilens.Renderer(one).render() for one in (scene, baked))
     ceiling = (slice(3, 6), slice(8, 40))
@@ -24,6 +26,12 @@ def test_baked_light_is_the_files_and_reaches_what_no_lamp_does(tmp_path):
     rows, unshot = zip(*report["convergence"])
     assert unshot[-1] <= 1e-3 and list(rows) == sorted(rows)
     assert report["mean_difference"] < 0.03 and len(report["warnings"]) >= 2
+
+
+def test_a_bake_warns_as_all_do():
+    renderer = trilens.Renderer(trilens.load_scene(SCENE, SMALL))
+    with pytest.warns(trilens.TrilensWarning, match="mirrors stop the light"):
+        renderer.bake(**COARSE)
 
 
 def test_what_cannot_be_baked_is_refused():

@@ -23,7 +23,7 @@ FREE = ["/meshes/ball/primitive/center", "/meshes/ball/primitive/radius"]
 
 def test_a_fit_finds_the_ball(ball, pairs):
     start = ball.with_overrides({"/meshes/ball/primitive/radius": 0.95}, warn=lambda message: None)
-    found = trilens.fit(start, *pairs, FREE)
+    found = trilens.fit(start, *pairs, FREE, warn=lambda message: None)
     assert found.converged and found.rank == 4 and found.rms < 1e-6 < found.rms_start
     assert found.states == ["used"] * len(pairs[0])
     assert found.residuals.shape == (len(pairs[0]), 2)
@@ -31,8 +31,28 @@ def test_a_fit_finds_the_ball(ball, pairs):
     radius = next(mesh for mesh in true if mesh["name"] == "ball")["primitive"]["radius"]
     assert found.parameters[3].value == pytest.approx(radius, abs=1e-8)
     assert np.sqrt(np.diag(found.covariance)) == pytest.approx([one.sigma for one in found.parameters])
-    again = trilens.fit(found.scene, *pairs, FREE, match="nearest")
+    again = trilens.fit(found.scene, *pairs, FREE, match="nearest", warn=lambda message: None)
     assert again.rms_start < 1e-6
+
+
+def test_a_fit_and_a_design_warn_as_all_do(ball, pairs):
+    told = []
+    far = np.array(pairs[0])
+    far[0] += 30
+    found = trilens.fit(ball, far, pairs[1], FREE, warn=told.append)
+    assert told == found.warnings and any("outliers" in one for one in told)
+    with pytest.warns(trilens.TrilensWarning, match="outliers"):
+        trilens.fit(ball, far, pairs[1], FREE)
+    with pytest.raises(trilens.TrilensWarning):
+        trilens.fit(ball, far, pairs[1], FREE)
+    with pytest.raises(trilens.UsageError, match="warn"):
+        trilens.fit(ball, far, pairs[1], FREE, warn=3)
+
+    told.clear()
+    design = trilens.design_mirror(trilens.wish_example(), warn=told.append)
+    assert told == design.warnings and any("curl" in one for one in told)
+    with pytest.warns(trilens.TrilensWarning, match="curl"):
+        trilens.design_mirror(trilens.wish_example())
 
 
 def test_misuse_of_a_fit_is_named(ball, pairs):
@@ -53,7 +73,7 @@ def test_misuse_of_a_fit_is_named(ball, pairs):
 
 def test_a_design_is_nearer_to_its_wish_than_a_sphere(tmp_path):
     wish = trilens.wish_example()
-    mirror = trilens.design_mirror(wish, compare_sphere=True)
+    mirror = trilens.design_mirror(wish, compare_sphere=True, warn=lambda message: None)
     assert mirror.errors["mean"] < 0.5 * mirror.sphere["mean"]
     assert mirror.error_map.shape == (40, 40) and mirror.heights.shape == (12, 12)
     assert mirror.error_map.mean() == pytest.approx(mirror.errors["mean"], rel=0.01)  # at samples; all over
@@ -65,7 +85,7 @@ def test_a_design_is_nearer_to_its_wish_than_a_sphere(tmp_path):
     plane = wish.pop("wish")
     origin, u, v = (np.array(plane[key]) for key in ("origin", "u", "v"))
     wall = origin + s[..., None] * u + t[..., None] * v
-    same = trilens.design_mirror(wish, target=wall)
+    same = trilens.design_mirror(wish, target=wall, warn=lambda message: None)
     assert same.errors["mean"] == pytest.approx(mirror.errors["mean"], rel=1e-5)
     with pytest.raises(trilens.InputError, match="eye"):
         trilens.design_mirror({**wish, "eye": [0, 0, -1]}, target=wall)

@@ -31,6 +31,20 @@ def test_json_and_dict_make_the_same_scene_again(sphere, image):
     assert sphere.to_json(indent=None).count("\n") == 0
 
 
+def test_json_names_files_from_where_it_will_lie(tmp_path):
+    (tmp_path / "given").mkdir()
+    (tmp_path / "wall.obj").write_text("v -3 0 -4\nv 3 0 -4\nv 3 3 -4\nf 1 2 3\n")
+    scene = trilens.parse_scene({"version": 1, "film": {"width": 4, "height": 4},
+                                 "cameras": [{"name": "main", "lookAt": {"eye": [0, 1, 4], "at": [0, 1, 0]}}],
+                                 "lights": [{"type": "ambient"}],
+                                 "meshes": [{"name": "wall", "role": "object", "file": "../wall.obj"}]},
+                                tmp_path / "given")
+    assert "../wall.obj" in scene.to_json()
+    (tmp_path / "out.json").write_text(scene.to_json(folder=tmp_path))
+    moved = trilens.load_scene(tmp_path / "out.json")
+    assert moved.to_dict()["meshes"][0]["file"] == "wall.obj"
+
+
 def test_overrides_and_resolution_stand_in_the_resolved_scene(sphere):
     changed = trilens.load_scene(
         SOURCE / "scenes/sphere.json", {"/film/width": 64, "/meshes/1/name": "7", "/background/color": [0, 0.5, 1]}, resolution=3

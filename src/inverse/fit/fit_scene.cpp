@@ -35,6 +35,22 @@ double ior_of(const Json& material) {
     return material.contains("ior") ? material.at("ior").get<double>() : Material().ior;
 }
 
+/// Says which normals an optic has that are not those of its surface, and where the scene says so.
+[[noreturn]] void refuse(const Scene& scene, std::size_t optic) {
+    const Mesh& mesh = scene.meshes[optic];
+    const std::string place = fmt::format("/meshes/{}/", optic);
+    if (mesh.normals.type != NormalOverride::Type::kSmooth)
+        throw InputError(scene_title(scene), place + "normals",
+                         "an optic whose normals are overridden cannot be fitted");
+    if (mesh.maps_normals)
+        throw InputError(
+            scene_title(scene), fmt::format("/materials/{}/normalTexture", mesh.material),
+            fmt::format("turns the normals of optic \"{}\", which then cannot be fitted", mesh.name));
+    throw InputError(scene_title(scene), place + "subdivisionScheme",
+                     "\"none\" interpolates normals between the corners, and such an optic cannot be fitted; "
+                     "with \"bilinear\" flat faces stay flat, and have their own");
+}
+
 const TextureReader& no_pictures() {
     static const TextureReader reader{
         [](const std::string& file) -> std::shared_ptr<const Texture> {
@@ -61,10 +77,7 @@ SurfacePoint moved_point(const FitOptic& optic, const SurfacePoint& as_built) {
 
 FitSceneMaker::FitSceneMaker(const Scene& scene) : scene_(scene) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-        if (scene.meshes[m].role == Role::kOptic &&
-            !has_own_normals(scene.meshes[m]))
-            throw InputError(scene_title(scene), fmt::format("/meshes/{}/normals", m),
-                             "an optic with overridden or interpolated normals cannot be fitted");
+        if (scene.meshes[m].role == Role::kOptic && !has_own_normals(scene.meshes[m])) refuse(scene, m);
 }
 
 FitScene FitSceneMaker::make(const Json& document, const std::vector<FitParameter>& parameters) {
