@@ -163,7 +163,7 @@ void check_images(const py::object& images) {
     };
     bool is_such = py::isinstance<py::array>(images) &&
                    py::reinterpret_borrow<py::array>(images).ndim() == 1 &&
-                   has(images.attr("dtype"), {"point", "step_count", "steps"});
+                   has(images.attr("dtype"), {"point", "step_count", "steps", "x", "y"});
     if (is_such) {
         const py::object steps = images[py::str("steps")];
         is_such = has(steps.attr("dtype"), {"optic", "face", "front", "event", "uv"}) &&
@@ -184,9 +184,15 @@ std::vector<ImageStart> starts_of(const py::object& images) {
                   passes = numbers(steps["event"].attr("__eq__")("pass"));
     const Doubles uv = Doubles(py::array_t<double, py::array::c_style | py::array::forcecast>(steps["uv"]));
     const auto wide = static_cast<std::size_t>(optic.ndim() == 2 ? optic.shape(1) : 0);
+    const auto coordinates = [&](const char* field) {
+        return Doubles(py::array_t<double, py::array::c_style | py::array::forcecast>(images[field]));
+    };
+    const Doubles x = coordinates("x"), y = coordinates("y");
     std::vector<ImageStart> starts(static_cast<std::size_t>(point.size()));
     for (std::size_t i = 0; i < starts.size(); ++i) {
         starts[i].point = static_cast<std::size_t>(point.data()[i]);
+        if (std::isfinite(x.data()[i]) && std::isfinite(y.data()[i]))
+            starts[i].pixel = Vec2(x.data()[i], y.data()[i]);
         const auto used =
             std::min(wide, static_cast<std::size_t>(std::max<std::int64_t>(0, count.data()[i])));
         for (std::size_t k = i * wide; k < i * wide + used; ++k) {

@@ -192,7 +192,7 @@ class CeresImages final : public ceres::EvaluationCallback {
         for (const std::size_t i : some) {
             points.push_back(world_point(seen_[i]));
             if (!seen_[i].image) continue;
-            starts.push_back({points.size() - 1, seen_[i].image->events});
+            starts.push_back({points.size() - 1, seen_[i].image->events, seen_[i].image->pixel});
             started.push_back(i);
             seen_[i].image.reset();
         }

@@ -242,7 +242,7 @@ std::vector<std::optional<WorldImage>> Renderer::refine(std::span<const Vec3> po
                 fmt::format("start {} is of point {}, but there are {}", i, starts[i].point, points.size()));
         for (const PathEvent& event : starts[i].events)
             if (event.optic >= world_->optics.size() ||
-                event.face >= world_->optics[event.optic].surface->face_count() ||
+                (event.face != kNone && event.face >= world_->optics[event.optic].surface->face_count()) ||
                 !std::isfinite(event.uv.x) || !std::isfinite(event.uv.y))
                 throw UsageError(fmt::format("start {} is none of this scene's optics and faces", i));
     }

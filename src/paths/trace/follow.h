@@ -159,6 +159,7 @@ struct HistoryQuery {
     std::vector<PathSegment> history;  // a chain: each segment the parent of the next; only steps, colours
                                        // and `ends` are asked, and the last one ends
     Vec3 point{0};                     // world
+    bool is_direction = false;         // the point lies at infinity, in this unit direction
 };
 
 /// One image of the point.
@@ -166,11 +167,13 @@ struct HistoryImage {
     Vec2 pixel{0};
     std::vector<PathEvent> events;  // the path's meetings with optics
     double first_way = 0;           // from the eye to the first of them
-    double distance = 0;            // from the last of them to the point
-    /// The share of each colour of the point's light that comes to the camera this way.
+    double distance = 0;            // from the last of them to the point; infinite for a direction
+    /// The share of each colour of the point's light that comes to the camera this way; of a direction's
+    /// without what is lost on the last ray.
     Vec3 weight{1};
-    double residual = 0;  // distance from the ray to the point, scene units
-    /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit.
+    double residual = 0;  // distance from the ray to the point, scene units; sine for a direction
+    /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit, of a direction
+    /// per radian across it.
     std::array<Vec3, 2> derivative{};
 };
 

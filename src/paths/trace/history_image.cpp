@@ -3,6 +3,7 @@
 #include "paths/trace/follow.h"
 
 #include <cmath>
+#include <limits>
 
 namespace trilens {
 namespace {
@@ -59,8 +60,8 @@ std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
 }
 
 /// What the ray misses the point by, at right angles to the ray.
-Vec3 miss(const Exit& exit, const Vec3& point) {
-    const Vec3 to = point - exit.ray.origin;
+Vec3 miss(const Exit& exit, const HistoryQuery& query) {
+    const Vec3 to = query.is_direction ? query.point : query.point - exit.ray.origin;
     return to - dot(to, exit.ray.direction) * exit.ray.direction;
 }
 
@@ -88,10 +89,9 @@ std::optional<Linear> linearised(const HistoryQuery& query, const Vec2& pixel, c
         step[k] = kPixelStep;
         const std::optional<Exit> after = exit_at(query, pixel + step), before = exit_at(query, pixel - step);
         if (!after && !before) return std::nullopt;
-        const Vec3 change = after && before
-                                ? (miss(*after, query.point) - miss(*before, query.point)) / (2 * kPixelStep)
-                            : after ? (miss(*after, query.point) - miss(exit, query.point)) / kPixelStep
-                                    : (miss(exit, query.point) - miss(*before, query.point)) / kPixelStep;
+        const Vec3 change = after && before ? (miss(*after, query) - miss(*before, query)) / (2 * kPixelStep)
+                            : after         ? (miss(*after, query) - miss(exit, query)) / kPixelStep
+                                            : (miss(exit, query) - miss(*before, query)) / kPixelStep;
         for (int axis = 0; axis < 2; ++axis) linear.jacobian[axis][k] = dot(linear.axis[axis], change);
     }
     if (!(std::fabs(linear.determinant()) > 0)) return std::nullopt;
@@ -104,9 +104,16 @@ std::optional<HistoryImage> image_of(const HistoryQuery& query, const Vec2& pixe
     image.pixel = pixel;
     image.events = exit.events;
     image.first_way = exit.first_way;
+    image.residual = length(miss(exit, query));
+    image.weight = exit.weight;
+    if (query.is_direction) {
+        image.distance = std::numeric_limits<double>::infinity();
+        if (!(dot(query.point, exit.ray.direction) > 0) || image.residual > kMostResidual)
+            return std::nullopt;
+        return image;
+    }
     image.distance = dot(query.point - exit.ray.origin, exit.ray.direction);
-    image.weight = exit.weight * body_transmittance(*query.world, exit.medium, image.distance);
-    image.residual = length(miss(exit, query.point));
+    image.weight *= body_transmittance(*query.world, exit.medium, image.distance);
     if (!(image.distance > 0) || image.residual > kMostResidual * (image.distance + image.first_way))
         return std::nullopt;
     return image;
@@ -129,11 +136,11 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
     Vec2 pixel = start;
     std::optional<Exit> exit = exit_at(query, pixel);
     if (!exit) return std::nullopt;
-    double size = length(miss(*exit, query.point));
+    double size = length(miss(*exit, query));
     for (int i = 0; i < kMostWalks; ++i) {
         const std::optional<Linear> linear = linearised(query, pixel, *exit);
         if (!linear) return std::nullopt;
-        const Vec3 by = miss(*exit, query.point);
+        const Vec3 by = miss(*exit, query);
         Vec2 step = linear->against(dot(linear->axis[0], by), dot(linear->axis[1], by));
         const double far = length(step);
         if (!(far < 1e12)) return std::nullopt;
@@ -144,7 +151,7 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
         for (int h = 0; h < kMostShorter && !nearer; ++h, step *= 0.5) {
             const std::optional<Exit> next = exit_at(query, pixel + step);
             if (!next) continue;
-            const double next_size = length(miss(*next, query.point));
+            const double next_size = length(miss(*next, query));
             if (!(next_size < size)) continue;
             pixel += step;
             exit = next;

@@ -100,8 +100,9 @@ std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, con
         }
         return found;
     }
-    if (!camera.model || !camera.model->eye()) return std::nullopt;
-    const double step = kPlaceStep * length(place - *camera.model->eye());
+    const std::optional<Ray> view = camera.model ? exact_ray(camera, *pixel) : std::nullopt;
+    if (!view) return std::nullopt;
+    const double step = kPlaceStep * length(place - view->origin);
     for (int k = 0; k < 3; ++k) {
         Vec3 by(0);
         by[k] = step;
@@ -123,8 +124,13 @@ HistoryQuery history_query(const World& world, const Frame& frame, std::span<con
     };
     if (!frame.camera_media.none())
         query.around = [&frame](const Ray& ray) { return frame.camera_media.of(ray); };
+    Colours colours = kAllColours;
     for (std::size_t i = 0; i < steps.size(); ++i) {
+        const Optic& optic = world.optics[steps[i].optic];
+        if (steps[i].event == Event::kTransmit && world.scene.materials[optic.material].dispersion > 0)
+            colours = 1;
         PathSegment segment;
+        segment.colours = colours;
         segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);
         segment.step = steps[i];
         segment.ends = i + 1 == steps.size();
@@ -192,6 +198,21 @@ std::optional<ChainImage> solve_image(const World& world, const Frame& frame, co
     image.is_regular = sensitivity.is_regular();
     image.derivative = sensitivity.by_point();
     return image;
+}
+
+std::optional<ChainImage> solve_any_image(const World& world, const Frame& frame, const ChainStart& start,
+                                          const ProjectedPoint& point) {
+    if (chain_eye(frame.camera)) return solve_image(world, frame, start, point);
+    if (start.events.empty()) return std::nullopt;
+    std::vector<Step> steps;
+    for (const PathEvent& event : start.events) steps.push_back({event.optic, event.event});
+    HistoryQuery query = history_query(world, frame, steps, point.place);
+    query.is_direction = point.is_direction;
+    std::optional<HistoryImage> found = refine_history_image(query, start.pixel);
+    if (!found) return std::nullopt;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (found->events[i].front != start.events[i].front) return std::nullopt;
+    return ChainImage{std::move(found->events), {found->pixel, {}}, found->derivative, true};
 }
 
 std::optional<ImageSensitivity> image_sensitivity(const World& world, const Frame& frame,

@@ -43,7 +43,7 @@ std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, con
 std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near);
 
 /// The question how the camera's ray at a place of the film goes over these steps, and where near it the
-/// point is seen so; see refine_history_image.
+/// point is seen so, by green light where glass parts it; see refine_history_image.
 HistoryQuery history_query(const World& world, const Frame& frame, std::span<const Step> steps,
                            const Vec3& point);
 
@@ -87,6 +87,11 @@ struct ChainImage {
 };
 std::optional<ChainImage> solve_image(const World& world, const Frame& frame, const ChainStart& start,
                                       const ProjectedPoint& point);
+
+/// The same for any camera: of one whose rays meet in no eye and are not parallel by Newton's method on the
+/// film, from the start's pixel.
+std::optional<ChainImage> solve_any_image(const World& world, const Frame& frame, const ChainStart& start,
+                                          const ProjectedPoint& point);
 
 /// How an image moves whose path is known.
 struct ImageSensitivity {

@@ -219,7 +219,8 @@ OpticImage on_film_image(const HistoryImage& exact, OpticImage image) {
 }  // namespace
 
 /// Through a camera without one eye: each image of the facets is moved to where the exact ray passes through
-/// the point; two that come to one place count once.
+/// the point; two that come to one place count once, and where the film is searched as well one that comes to
+/// none does not count.
 void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
                                     std::vector<OpticImage>& images) const {
     const Event event = path.path == Path::kReflect ? Event::kReflect : Event::kTransmit;
@@ -232,7 +233,7 @@ void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpticImage& one) {
             return one.refined && image.refined && length(one.pixel - image.pixel) < kSamePixels;
         });
-        if (!known) kept.push_back(image);
+        if (!known && (image.refined || !searches_film())) kept.push_back(image);
     }
     images = std::move(kept);
 }

@@ -57,11 +57,12 @@ Id Division::place(const Vec3& screen) {
     for (std::size_t i = 0; i < made.segments.size(); ++i) {
         const PathSegment& last = made.segments[i];
         // Where light parts into colours the middle one stands for all.
-        if (last.parent == kNone || (last.colours != kAllColours && last.colours != 1)) continue;
+        if (last.colours != kAllColours && last.colours != 1) continue;
         HistoryThere history{static_cast<Id>(i), last.colours, {}};
         for (Id s = history.last; s != kNone; s = made.segments[s].parent)
             history.steps.push_back(made.segments[s].step);
         std::reverse(history.steps.begin(), history.steps.end());
+        if (history.steps.size() < question_.least_steps) continue;
         if (question_.asks(history.steps) && !made.segment_of(history))
             made.histories.push_back(std::move(history));
     }

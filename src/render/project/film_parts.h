@@ -52,6 +52,7 @@ struct FilmPartsQuestion {
     std::function<std::vector<PathSegment>(Id facet, const Vec2& pixel)> follow;
     /// Whether a history counts. Called on several threads.
     std::function<bool(std::span<const Step> steps)> asks;
+    std::size_t least_steps = 2;  // shorter histories do not count
     /// Longer histories are told, but nothing is divided for them.
     std::size_t most_steps = 3;
 };

@@ -100,7 +100,8 @@ class ParameterDerivatives {
     const std::vector<SceneNumber>& numbers() const { return numbers_; }
 
     /// Per number how the image's pixel moves with it, in pixels per unit of the number; empty where that is
-    /// not known: facets' images, those at a caustic, and cameras without an eye or parallel rays.
+    /// not known: facets' images and those at a caustic; through a camera without an eye or parallel rays
+    /// also those over normals that are not their surface's.
     std::vector<Vec2> of(const WorldImage& image, const ProjectedPoint& point) const;
     /// The same of an image over optics whose image_sensitivity() is known.
     std::vector<Vec2> of(const WorldImage& image, const ImageSensitivity& sensitivity) const;
@@ -109,6 +110,7 @@ class ParameterDerivatives {
     struct Step;
 
     std::vector<Vec2> of_direct(const Vec2& pixel, const ProjectedPoint& point) const;
+    std::vector<Vec2> of_film(const WorldImage& image, const ProjectedPoint& point) const;
 
     const World& world_;
     const Frame& frame_;

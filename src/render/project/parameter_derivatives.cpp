@@ -5,6 +5,8 @@
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
+#include "reflect/reflection.h"
+#include "refract/refraction.h"
 #include "render/frame/camera_rays.h"
 #include "scene/data/scene_digest.h"
 
@@ -79,9 +81,66 @@ struct ParameterDerivatives::Step {
     std::vector<Surfaces> surfaces;            // per optic
     std::vector<std::array<double, 2>> glass;  // per optic: how its index changes for usual_colours(1), (2)
 
+    /// The last ray of the image's pixel over its events, unit, after the step below (side -1) or above (1);
+    /// none where it does not go that way.
+    std::optional<Ray> last_ray(const World& world, std::span<const EventMedia> media, int side,
+                                const Camera& unmoved, const WorldImage& image) const;
     /// Of the image's pixel; none where the camera does not show it on both sides.
     std::optional<Vec2> moved(const WorldImage& image, const ImageSensitivity& by) const;
 };
+
+namespace {
+
+/// Where a ray meets a surface near a point of it, to second order of the surface about that point: its place
+/// and unit normal; none where it passes along it.
+std::optional<Ray> met_near(const SurfacePoint& about, const Ray& ray) {
+    constexpr int kMeetingSteps = 4;
+    const Vec3 &d = ray.direction, a = unit_across(d), b = cross(d, a);
+    Vec2 uv(0);
+    Vec3 place, du, dv;
+    for (int i = 0; i <= kMeetingSteps; ++i) {
+        du = about.du + uv.x * about.duu + uv.y * about.duv;
+        dv = about.dv + uv.x * about.duv + uv.y * about.dvv;
+        place = about.position + 0.5 * (uv.x * (about.du + du) + uv.y * (about.dv + dv));
+        const Vec2 off(dot(place - ray.origin, a), dot(place - ray.origin, b));
+        const Vec2 by_u(dot(du, a), dot(du, b)), by_v(dot(dv, a), dot(dv, b));
+        const double area = cross(by_u, by_v);
+        if (!(std::fabs(area) > 0)) return std::nullopt;
+        if (i < kMeetingSteps) uv -= Vec2(cross(off, by_v), cross(by_u, off)) / area;
+    }
+    return Ray{place, normalize_or_zero(cross(du, dv))};
+}
+
+}  // namespace
+
+std::optional<Ray> ParameterDerivatives::Step::last_ray(const World& world, std::span<const EventMedia> media,
+                                                        int side, const Camera& unmoved,
+                                                        const WorldImage& image) const {
+    const Camera& camera = !cameras ? unmoved : side < 0 ? cameras->below : cameras->above;
+    std::optional<Ray> ray = exact_ray(camera, image.pixel);
+    const auto index_of = [&](Id body) {
+        if (body == kNone) return 1.0;
+        const double now = ior_of(world.scene.materials[world.optics[body].material], usual_colours(2));
+        return glass.empty() ? now : now + 0.5 * side * glass[body][1];
+    };
+    for (std::size_t i = 0; ray && i < image.events.size(); ++i) {
+        const PathEvent& event = image.events[i];
+        const Surface* surface = world.optics[event.optic].surface.get();
+        if (!surfaces.empty() && surfaces[event.optic].below)
+            surface = (side < 0 ? surfaces[event.optic].below : surfaces[event.optic].above).get();
+        ray->direction = normalize_or_zero(ray->direction);
+        const std::optional<Ray> met = met_near(surface->eval(event.face, event.uv), *ray);
+        if (!met) return std::nullopt;
+        const Vec3 normal = dot(met->direction, ray->direction) > 0 ? -met->direction : met->direction;
+        const std::optional<Vec3> out =
+            event.event == Event::kReflect
+                ? mirrored(ray->direction, normal)
+                : refracted(ray->direction, normal, index_of(media[i].before) / index_of(media[i].after));
+        if (!out) return std::nullopt;
+        ray = Ray{met->origin, *out};
+    }
+    return ray;
+}
 
 std::optional<Vec2> ParameterDerivatives::Step::moved(const WorldImage& image,
                                                       const ImageSensitivity& by) const {
@@ -161,8 +220,38 @@ ParameterDerivatives::~ParameterDerivatives() = default;
 
 std::vector<Vec2> ParameterDerivatives::of(const WorldImage& image, const ProjectedPoint& point) const {
     if (image.path == Path::kDirect) return of_direct(image.pixel, point);
+    if (!chain_eye(frame_.camera)) return of_film(image, point);
     const auto sensitivity = image_sensitivity(world_, frame_, {image.events, image.pixel}, point);
     return sensitivity ? of(image, *sensitivity) : std::vector<Vec2>();
+}
+
+/// A camera whose rays meet in no eye: what a step moves is the last ray of the image's pixel, and the image
+/// moves as if the point moved as far the other way.
+std::vector<Vec2> ParameterDerivatives::of_film(const WorldImage& image, const ProjectedPoint& point) const {
+    if (!image.has_derivative || !std::all_of(image.events.begin(), image.events.end(), [&](const auto& one) {
+            return has_own_normals(world_.scene.meshes[world_.optics[one.optic].mesh]);
+        }))
+        return {};
+    const std::optional<Ray> view = exact_ray(frame_.camera, image.pixel);
+    const CameraMedia& around = frame_.camera_media;
+    if (!view) return {};
+    const auto media = event_media(world_, around.none() ? Media() : around.of(*view), image.events);
+    if (!media) return {};
+    const auto missed = [&](const Step& step, int side) -> std::optional<Vec3> {
+        const std::optional<Ray> last = step.last_ray(world_, *media, side, frame_.camera, image);
+        if (!last) return std::nullopt;
+        const Vec3 to = point.is_direction ? point.place : point.place - last->origin;
+        return to - dot(to, last->direction) * last->direction;
+    };
+    std::vector<Vec2> moved;
+    moved.reserve(steps_.size());
+    for (const Step& step : steps_) {
+        const std::optional<Vec3> below = missed(step, -1), above = missed(step, 1);
+        if (!below || !above) return {};
+        const Vec3 by = (*above - *below) / step.size;
+        moved.emplace_back(dot(image.derivative[0], by), dot(image.derivative[1], by));
+    }
+    return moved;
 }
 
 std::vector<Vec2> ParameterDerivatives::of_direct(const Vec2& pixel, const ProjectedPoint& point) const {

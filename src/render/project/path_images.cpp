@@ -205,7 +205,9 @@ void SeveralOpticsImages::add_nodes() {
     const std::vector<PathNode>& nodes = builder_.paths().nodes;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         // Where light parts into colours the middle one stands for all.
-        if (nodes[n].step_count < 2 || (nodes[n].colours != kAllColours && nodes[n].colours != 1)) continue;
+        if (nodes[n].step_count < choice_.least_steps ||
+            (nodes[n].colours != kAllColours && nodes[n].colours != 1))
+            continue;
         std::vector<PathSegment> segments;
         for (Id at = static_cast<Id>(n); at != kNone; at = nodes[at].parent) {
             PathSegment segment;
@@ -283,6 +285,7 @@ void SeveralOpticsImages::add_film_parts() {
     question.film = Vec2(world_.scene.film.width, world_.scene.film.height);
     question.follow = [this](Id facet, const Vec2& pixel) { return followed_from(facet, pixel); };
     question.asks = [this](std::span<const Step> steps) { return choice_.word.is(steps); };
+    question.least_steps = choice_.least_steps;
     // Passing through without an interface is a step, and no letter.
     if (choice_.word.asks()) question.most_steps = kManySteps;
     const std::vector<FilmTriangle> traced = traced_triangles();

@@ -35,6 +35,7 @@ struct SeveralOpticsImage {
 struct SeveralOpticsChoice {
     EventWord word;         // only its histories, and no deeper than it goes
     double min_weight = 0;  // histories that nowhere carry half of it in any colour are left out
+    std::size_t least_steps = 2;  // shorter histories are left out
 };
 
 /// Looks through all facets of one optic that lie on the film; where facets are traced, from the exact rays

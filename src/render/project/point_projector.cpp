@@ -99,9 +99,10 @@ void PointProjector::add_optic(std::size_t index) {
                               std::make_unique<FacetImages>(world_, frame_, index, path)});
     }
     path_world(world_);
-    if (may_have_several_)
+    if (may_have_several_ || (searches_film() && asks_one))
         several_.push_back(std::make_unique<SeveralOpticsImages>(
-            world_, frame_, index, SeveralOpticsChoice{request_.path, request_.min_weight}));
+            world_, frame_, index,
+            SeveralOpticsChoice{request_.path, request_.min_weight, searches_film() ? std::size_t{1} : 2}));
 }
 
 bool PointProjector::on_film(const Vec2& pixel) const {
@@ -112,7 +113,9 @@ bool PointProjector::on_film(const Vec2& pixel) const {
 /// By the chain of the image's surfaces, once for the point and all parameters.
 void PointProjector::differentiate(WorldImage& image, const ProjectedPoint& point) const {
     const bool is_direct = image.path == Path::kDirect;
-    const bool by_point = request_.derivatives && image.refined && !image.has_derivative && !is_direct;
+    // Through a camera without one eye the numbers' derivatives are made of the point's.
+    const bool asks = request_.derivatives || (parameters_ && !chain_eye(camera_));
+    const bool by_point = asks && image.refined && !image.has_derivative && !is_direct;
     if (is_direct && parameters_) image.by_parameter = parameters_->of(image, point);
     if (is_direct || !(by_point || parameters_)) return;
     const auto sensitivity = image_sensitivity(world_, frame_, {image.events, image.pixel}, point);
@@ -124,12 +127,13 @@ void PointProjector::differentiate(WorldImage& image, const ProjectedPoint& poin
             solve_derivative(image, point);
         }
     }
-    if (parameters_ && sensitivity) image.by_parameter = parameters_->of(image, *sensitivity);
+    if (!parameters_) return;
+    image.by_parameter = sensitivity ? parameters_->of(image, *sensitivity) : parameters_->of(image, point);
 }
 
 /// By the chain solved anew; where the camera has no eye, by the exact paths around the image.
 void PointProjector::solve_derivative(WorldImage& image, const ProjectedPoint& point) const {
-    if (const auto solved = solve_image(world_, frame_, {image.events, image.pixel}, point)) {
+    if (const auto solved = solve_any_image(world_, frame_, {image.events, image.pixel}, point)) {
         if (!solved->is_regular || length(solved->film.pixel - image.pixel) > kSamePixels) return;
         image.has_derivative = true;
         image.derivative = solved->derivative;
@@ -156,8 +160,8 @@ std::optional<ChainImage> PointProjector::moved_image(const WorldImage& image,
     const bool is_of_chain = chain_eye(camera_) && std::ranges::all_of(image.steps, [&](const Step& step) {
                                  return has_own_normals(world_.scene.meshes[world_.optics[step.optic].mesh]);
                              });
-    if (is_of_chain || point.is_direction)
-        return solve_image(world_, frame_, {image.events, image.pixel}, point);
+    if (is_of_chain || point.is_direction || !chain_eye(camera_))
+        return solve_any_image(world_, frame_, {image.events, image.pixel}, point);
     if (!image.refined) return std::nullopt;
     const auto exact =
         refine_history_image(history_query(world_, frame_, image.steps, point.place), image.pixel);
@@ -220,7 +224,14 @@ void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3&
                                  PointProjection& result) const {
     for (SeveralOpticsImage& found : several.images(point)) {
         const std::optional<Ray> view = exact_ray(camera_, found.exact.pixel);
-        if (!view || !sight_.goes_straight(found.exact.events.back().point, point)) continue;
+        // Where paths end after one optic it is seen through what they would meet next.
+        const bool goes_on = world_.scene.render.max_depth > 0 || found.steps.size() > 1;
+        if (!view || (goes_on && !sight_.goes_straight(found.exact.events.back().point, point))) continue;
+        if (std::any_of(result.images.begin(), result.images.end(), [&](const WorldImage& one) {
+                return one.refined && one.steps == found.steps &&
+                       length(one.pixel - found.exact.pixel) < kSamePixels;
+            }))
+            continue;
         WorldImage image;
         image.weight = found.exact.weight;
         if (image.weight == Vec3(0)) continue;  // no light comes this way
@@ -342,7 +353,9 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         image.refined = one.refined;
         image.off = one.refined ? 0 : kUnknownOffset;
         image.inside = on_film(image.pixel);
-        image.visible = asks_what_hides(image) && is_between_planes(t) && is_free_beyond(one.from, point) &&
+        // What only facets have is no image of the exact camera.
+        image.visible = asks_what_hides(image) && (one.refined || !request_.refine) && is_between_planes(t) &&
+                        is_free_beyond(one.from, point) &&
                         sight_.sees(eye, one.from, on_facet);
         result.images.push_back(std::move(image));
     }
@@ -360,7 +373,7 @@ void PointProjector::project(std::span<const ProjectedPoint> points, std::span<c
         const Vec3& point = of_some[k];
         const ProjectedPoint& asked = points[some[k]];
         PointProjection& found = result[some[k]];
-        found.complete = !may_have_several_;
+        found.complete = !may_have_several_ && several_.empty();
         std::size_t most = 1;
         for (const std::vector<SpecularSearch>& on_path : searched) most += on_path[k].images.size();
         found.images.reserve(most);

@@ -70,6 +70,13 @@ class PointProjector {
                (camera_.linear || (camera_.model && camera_.model->eye()));
     }
 
+    /// Whether images over one optic are looked for on the film, as those over several are: through a camera
+    /// without one eye, whose facets on the optic's own grid may mix several of its branches.
+    bool searches_film() const {
+        return camera_.model && !camera_.model->eye() &&
+               (request_.refine || is_ray_mesh_model(*camera_.model));
+    }
+
     const World& world_;
     ProjectRequest request_;
     Frame frame_;

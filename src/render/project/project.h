@@ -38,7 +38,8 @@ struct WorldImage {
     double off = 0;
     // The share of each colour of the point's light that comes this way, as pictures have it: Fresnel, tint
     // and absorption along the whole path. Where glass disperses, steps over one optic are those of its
-    // `ior`, and paths over several those of green, the only colour that is then not 0.
+    // `ior`, and paths over several, or to a camera without an eye or parallel rays, those of green, the only
+    // colour that is then not 0.
     Vec3 weight{1};
     std::vector<Step> steps;  // the meetings with optics, the first among them; none for the direct path
     std::vector<PathEvent>
@@ -108,13 +109,17 @@ std::vector<PointProjection> project_directions(const World& world, const Projec
 struct ImageStart {
     std::size_t point = 0;  // index of the point that it is an image of
     std::vector<PathEvent>
-        events;  // empty: the direct image; `optic`, `event`, `front`, `face` and `uv` are asked
+        events;  // empty: the direct image; `optic`, `event`, `front`, `face` and `uv` are asked, and
+                 // where a face is kNone, as those of facets' images are, nothing is found
+    // About where the film shows it: of several places that may be meant the nearest is taken. None: the
+    // first.
+    std::optional<Vec2> pixel{};
 };
 
 /// Moves known images to where they are now: Newton's method alone, no search and nothing built for one, so
-/// that a point takes microseconds. An image for each start, in their order; none where Newton's method finds
-/// none near, or the camera has no eye and no parallel rays. `inside` is set, `visible` only says so where
-/// the request asks.
+/// that a point takes microseconds (for a camera without an eye or parallel rays on the film, by exact rays,
+/// for which the optics are made ready once). An image for each start, in their order; none where Newton's
+/// method finds none near. `inside` is set, `visible` only says so where the request asks.
 std::vector<std::optional<WorldImage>> refine_images(const World& world, const ProjectRequest& request,
                                                      std::span<const Vec3> points,
                                                      std::span<const ImageStart> starts);

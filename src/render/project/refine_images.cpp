@@ -1,5 +1,6 @@
 // Warm-started projection: Newton's method on the chain of surfaces from where images were.
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "base/util/check.h"
@@ -12,6 +13,8 @@ namespace trilens {
 namespace {
 
 constexpr std::size_t kStartsPerTask = 64;
+/// Places of a surface that lie no farther apart than this, relative to their size, are one.
+constexpr double kSamePlace = 1e-9;
 
 /// The optics' glass and mirrors, without their surfaces: enough to tell how light parts.
 PathWorld materials_alone(const World& world) {
@@ -37,14 +40,16 @@ class ImageRefiner {
 
     std::optional<WorldImage> refine(const ImageStart& start, const Vec3& point) const {
         std::optional<WorldImage> image =
-            start.events.empty() ? refine_direct(point) : refine_chain(start, point);
+            start.events.empty() ? refine_direct(start, point) : refine_chain(start, point);
         if (image && parameters_) image->by_parameter = parameters_->of(*image, {point});
         return image;
     }
 
   private:
     std::optional<WorldImage> refine_chain(const ImageStart& start, const Vec3& point) const;
-    std::optional<WorldImage> refine_direct(const Vec3& point) const;
+    std::optional<WorldImage> refine_direct(const ImageStart& start, const Vec3& point) const;
+    std::vector<FilmImage> shown(const Vec3& place, const ImageStart& start) const;
+    std::optional<ChainImage> solved_from(const ImageStart& start, const Vec3& point) const;
     bool on_film(const Vec2& pixel) const;
     std::optional<Vec3> weight_of(std::span<const PathEvent> events, const Ray& view,
                                   const Vec3& point) const;
@@ -60,7 +65,7 @@ class ImageRefiner {
 
 std::optional<Vec3> ImageRefiner::weight_of(std::span<const PathEvent> events, const Ray& view,
                                             const Vec3& point) const {
-    if (events.size() == 1) {
+    if (events.size() == 1 && chain_eye(frame_.camera)) {
         const PathEvent& one = events.front();
         const Path path = one.event == Event::kReflect ? Path::kReflect : Path::kRefract;
         return weight_over_one(world_, frame_, {one.optic, path, view, one.point, one.front, point});
@@ -84,8 +89,19 @@ bool ImageRefiner::on_film(const Vec2& pixel) const {
     return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= film.width && pixel.y <= film.height;
 }
 
-std::optional<WorldImage> ImageRefiner::refine_direct(const Vec3& point) const {
-    const std::vector<FilmImage> found = film_positions(frame_.camera, point);
+/// Where the film shows a place, that next to the start's pixel first: it tells apart the branches of a
+/// camera that has several.
+std::vector<FilmImage> ImageRefiner::shown(const Vec3& place, const ImageStart& start) const {
+    std::vector<FilmImage> found = film_positions(frame_.camera, place);
+    if (start.pixel)
+        std::stable_sort(found.begin(), found.end(), [&](const FilmImage& a, const FilmImage& b) {
+            return length(a.pixel - *start.pixel) < length(b.pixel - *start.pixel);
+        });
+    return found;
+}
+
+std::optional<WorldImage> ImageRefiner::refine_direct(const ImageStart& start, const Vec3& point) const {
+    const std::vector<FilmImage> found = shown(point, start);
     if (found.empty()) return std::nullopt;
     WorldImage image;
     image.pixel = found.front().pixel;
@@ -102,13 +118,31 @@ std::optional<WorldImage> ImageRefiner::refine_direct(const Vec3& point) const {
     return image;
 }
 
-std::optional<WorldImage> ImageRefiner::refine_chain(const ImageStart& start, const Vec3& point) const {
-    // The film place of the start tells a branch of the camera apart, where it has several.
+std::optional<ChainImage> ImageRefiner::solved_from(const ImageStart& start, const Vec3& point) const {
+    if (std::any_of(start.events.begin(), start.events.end(),
+                    [](const PathEvent& event) { return event.face == kNone; }))
+        return std::nullopt;
     const PathEvent& first = start.events.front();
     const Vec3 there = world_.optics[first.optic].surface->eval(first.face, first.uv).position;
-    const std::vector<FilmImage> seen = film_positions(frame_.camera, there);
-    const auto solved =
-        solve_image(world_, frame_, {start.events, seen.empty() ? Vec2(0) : seen.front().pixel}, {point});
+    std::vector<Vec2> places;
+    for (const FilmImage& image : shown(there, start)) places.push_back(image.pixel);
+    if (chain_eye(frame_.camera))
+        return solve_image(world_, frame_, {start.events, places.empty() ? Vec2(0) : places.front()},
+                           {point});
+    if (start.pixel) places.push_back(*start.pixel);
+    std::optional<ChainImage> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec2& place : places) {
+        std::optional<ChainImage> solved = solve_any_image(world_, frame_, {start.events, place}, {point});
+        const double off = solved ? length(solved->events.front().point - there) : least;
+        if (off + kSamePlace * (1 + length(there)) < least) nearest = std::move(solved), least = off;
+    }
+    return nearest;
+}
+
+std::optional<WorldImage> ImageRefiner::refine_chain(const ImageStart& start, const Vec3& point) const {
+    const PathEvent& first = start.events.front();
+    const auto solved = solved_from(start, point);
     if (!solved) return std::nullopt;
     const std::optional<Ray> view = exact_ray(frame_.camera, solved->film.pixel);
     const std::optional<Vec3> weight = view ? weight_of(solved->events, *view, point) : std::nullopt;

@@ -13,6 +13,8 @@ namespace {
 constexpr double kNearCosine = 0.9995;
 /// The camera sees a first meeting if the optic lies nowhere within this share of the way's ends.
 constexpr double kFirstShare = 1e-6;
+/// So many of the lone rays suffice over one optic: there they stand for silhouettes alone.
+constexpr std::size_t kLoneStartsOfOne = 4;
 
 bool same_image(const SeveralOpticsImage& a, const SeveralOpticsImage& b) {
     return a.steps == b.steps && length(a.exact.pixel - b.exact.pixel) < kSamePixels;
@@ -204,7 +206,9 @@ std::vector<SeveralOpticsImage> SeveralOpticsImages::images_over(const History& 
     if (history.seeds)
         for (const MeshPointImage& seed : history.seeds->images(point)) search.from_facet(seed);
 
-    for (const std::size_t lone : history.nearest_lone(point, !search.has_found())) search.from_lone(lone);
+    const Few<std::size_t, kLoneStarts> nearest = history.nearest_lone(point, !search.has_found());
+    const std::size_t starts = history.steps.size() > 1 ? kLoneStarts : kLoneStartsOfOne;
+    for (std::size_t k = 0; k < std::min(starts, nearest.size()); ++k) search.from_lone(nearest[k]);
     return search.take();
 }
 
