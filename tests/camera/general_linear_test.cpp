@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "camera/camera.h"
 #include "every_camera.h"
@@ -58,6 +59,40 @@ Characteristic characteristic(const Rays& rays) {
 }
 
 }  // namespace
+
+TEST_CASE("a general linear camera combines its rays from the eye's plane, their directions of unit depth",
+          "[camera]") {
+    Draw draw(8);
+    for (int round = 0; round < 50; ++round) {
+        CameraDescription from;
+        from.eye = draw.in_cube(1);
+        from.at = from.eye + draw.away(1, 3);
+        const Vec3 w = normalize(from.at - from.eye);
+        ThreeRayCamera kind;
+        std::array<Vec3, 3> direction, point;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 p = from.eye + draw.in_cube(2);
+            const Vec3 d = draw.uniform(0.3, 4) * (w + draw.in_cube(0.5));
+            const double across = draw.uniform(0, 1);
+            const Vec2 at = k == 0 ? Vec2(0.1 * across, 0) : k == 1 ? Vec2(1, across) : Vec2(0, 1);
+            kind.placed_rays[k] = {p, d, at};
+            direction[k] = d / dot(d, w);
+            point[k] = p - dot(p - from.eye, w) * direction[k];
+        }
+        from.kind = kind;
+        from.up = unit_across(w);
+        const Camera camera = make_camera(from, {61, 47});
+        for (int i = 0; i < 20; ++i) {
+            const double a = draw.uniform(-0.2, 1), b = draw.uniform(-0.2, 1), c = 1 - a - b;
+            const Vec2 place = a * kind.placed_rays[0].screen + b * kind.placed_rays[1].screen +
+                               c * kind.placed_rays[2].screen;
+            const std::optional<Ray> ray = exact_ray(camera, {61 * place.x, 47 * place.y});
+            REQUIRE(ray);
+            CHECK(length(ray->origin - (a * point[0] + b * point[1] + c * point[2])) < 1e-9);
+            CHECK(length(ray->direction - (a * direction[0] + b * direction[1] + c * direction[2])) < 1e-9);
+        }
+    }
+}
 
 TEST_CASE("rays of each general linear camera are named as what they are", "[camera]") {
     Draw draw(21);

@@ -117,7 +117,9 @@ struct PlacedRay {
     Vec2 screen{0};  // 0..1 from the film's top left
 };
 
-/// A general linear camera (Yu and McMillan), by three of its rays.
+/// A general linear camera (Yu and McMillan), by three of its rays. With w the unit view direction each
+/// counts as d / (d . w) from p - ((p - eye) . w) d / (d . w): the ray of a film place is the affine
+/// combination of these three that the place is of their places.
 struct ThreeRayCamera {
     static constexpr const char* kName = "generalLinear";
     std::array<PlacedRay, 3> placed_rays = {};

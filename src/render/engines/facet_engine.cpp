@@ -302,7 +302,7 @@ void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
     view_rims(grid, views);
     if (redraws_direct_) redraw_direct(owned, grid, views);
     if (draw_volumes_) views.volumes.assign(grid.size(), SampleVolumes());
-    count_from_eye(frame_.camera, views.samples);
+    count_from_eye(frame_.camera, views);
     std::vector<PathEnds> ends;
     ends.reserve(frame_.optics.size());
     std::vector<Id> traced;

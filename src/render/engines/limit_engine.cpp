@@ -177,7 +177,7 @@ void LimitViewer::view(const SampleGrid& grid, SampleViews& views) {
         views.ends.insert(views.ends.end(), found[task].ends.begin(), found[task].ends.end());
         views.steps.insert(views.steps.end(), found[task].steps.begin(), found[task].steps.end());
     }
-    count_from_eye(camera_, views.samples);
+    count_from_eye(camera_, views);
 }
 
 }  // namespace

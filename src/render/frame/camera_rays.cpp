@@ -204,9 +204,10 @@ FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, st
     return group_by_facet(owner, 1);
 }
 
-void count_from_eye(const CameraRays& camera, std::span<SampleView> views) {
+void count_from_eye(const CameraRays& camera, SampleViews& views) {
+    views.depth_by_length = camera.axis == Vec3(0);
     if (camera.near_depth == 0) return;
-    for (SampleView& view : views)
+    for (SampleView& view : views.samples)
         if (view.hit.seen() || view.optic != kNone) view.depth += camera.near_depth;
 }
 

@@ -46,8 +46,9 @@ void for_each_camera_ray(const RayMesh& mesh, const FacetSamples& owned, const S
 /// (those of facet 0), ascending. For the limit truth.
 FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, std::span<SampleView> views);
 
-/// Adds the depth at which the camera's rays begin to the depths of what is seen.
-void count_from_eye(const CameraRays& camera, std::span<SampleView> views);
+/// Adds the depth at which the camera's rays begin to the depths of what is seen, and says what the depths'
+/// unit is.
+void count_from_eye(const CameraRays& camera, SampleViews& views);
 
 /// The same of samples whose exact rays were followed; of a camera that is not linear these have the length of
 /// its facets' rays until now.

@@ -72,6 +72,7 @@ struct SampleViews {
     double outline_pixels =
         0;  // pixels that lie between optics' outlines and those of their facets, predicted
     double outline_error = 0;  // pixels: how far these may be off, where an error was asked for
+    bool depth_by_length = false;  // depths are in lengths of rays' directions, which may be any (rayMesh)
 
     // `sample`: an element of samples.
     /// What it shows on its optic; not to be read where it shows none.
@@ -88,6 +89,10 @@ struct SampleViews {
     }
     std::span<const Step> steps_of(const PathEnd& end) const {
         return {steps.data() + end.first_step, end.step_count};
+    }
+    /// Its depth in scene units: along the view axis where the camera has one, else along the ray.
+    double scene_depth(const SampleView& sample) const {
+        return depth_by_length ? sample.depth * length(sample.ray.direction) : sample.depth;
     }
     /// Null where the world has no volumes.
     const SampleVolumes* volumes_of(const SampleView& sample) const {

@@ -205,7 +205,8 @@ void Canvas::put_centre(const World& world, const SampleViews& views, const Samp
                         std::size_t pixel) {
     const bool optic = view.optic != kNone;
     if (depth_ != kNone)
-        floats(depth_)[pixel] = view.hit.seen() || optic ? static_cast<float>(view.depth) : kFarDepth;
+        floats(depth_)[pixel] =
+            view.hit.seen() || optic ? static_cast<float>(views.scene_depth(view)) : kFarDepth;
     if (optic_object_ != kNone) {
         ids(optic_object_)[pixel] = optic ? world.optics[view.optic].mesh : kNone;
         ids(optic_facet_)[pixel] = optic ? view.facet : kNone;

@@ -104,8 +104,11 @@ CameraFields line_fields() {
         of(part<CrossedSlitsCamera>("slits", several(2, several(2, ref("vec3"))),
                                     "crossedSlits: a point and a direction each; rays begin at the first."),
            Need::kYes),
-        of(part<ThreeRayCamera>("rays", several(3, ref("placedRay")),
-                                "generalLinear: all rays are affine combinations of these."),
+        of(part<ThreeRayCamera>(
+               "rays", several(3, ref("placedRay")),
+               "generalLinear: affine combinations of these by film place, after each direction d "
+               "is scaled to d . w = 1 and each point p slid along it to (p - eye) . w = 0; w is "
+               "unit, from lookAt's eye to its at."),
            Need::kYes),
     };
 }
@@ -159,7 +162,9 @@ CameraFields fineness_fields() {
                            "Pixels: as many facets as leave no place further off; instead of facets."))
             .without_default(),
         of_mesh("points", list_of(ref("vec3"), 3), "rayMesh: origin of each corner's ray."),
-        of_mesh("directions", list_of(ref("vec3"), 3), "rayMesh: one per corner, any length but 0."),
+        of_mesh("directions", list_of(ref("vec3"), 3),
+                "rayMesh: one per corner, any length but 0; lengths weigh when rays between "
+                "corners are interpolated."),
         of_mesh("screen", list_of(several(2, number_in(-1000, 1000)), 3),
                 "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the "
                 "film."),
