@@ -46,6 +46,7 @@ py::object end_dict(const Renderer& renderer, const PixelEnd* end) {
     dict["ray"] = ray_dict(end->ray);
     dict["facet_kind"] = kind_name(end->facet_kind);
     dict["sees"] = hit_dict(renderer, end->hit);
+    dict["cut"] = end->cut;
     return dict;
 }
 
@@ -107,6 +108,9 @@ void bind_explain(RendererClass& renderer) {
         "facet_kind: what the corner rays of the camera's or an optic's facet make among the general linear\n"
         "cameras (Yu and McMillan 2004), as FilmCamera.facet_kinds names them; None where no facet was "
         "used.\n"
+        "cut: the path would meet another optic, but the scene's maxDepth ends it: what it sees lies "
+        "straight "
+        "on,\npast that optic, in pictures too. method: \"projected\", \"subdivided\" or \"traced\".\n"
         "engine: \"exact\", \"classic\", \"envmap\", \"planar\", \"limit\" or \"facets\". Raises UsageError "
         "outside of "
         "the\nfilm and for a camera or resolution that there is not, InputError as render does.");

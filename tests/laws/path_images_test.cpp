@@ -7,6 +7,7 @@
 #include "trilens/trilens.h"
 
 using namespace trilens;
+using namespace trilens_test;
 
 namespace {
 
@@ -214,4 +215,44 @@ TEST_CASE("an explained pixel's paths weigh what shot rays of their words do", "
             }
     CHECK(compared > 40);
     CHECK(tinted > 20);
+}
+
+TEST_CASE("an explained pixel says which paths maxDepth ends, and that the truth traces them",
+          "[laws][law]") {
+    for (const char* depth : {"0", "1", "2"}) {
+        CAPTURE(depth);
+        SceneRequest request{source_dir() + "/scenes/paths/glass-before-mirror.json", {}, 8};
+        request.overrides = {{"/render/maxDepth", depth}};
+        const Renderer renderer(load_scene(request));
+        const Film& film = renderer.scene().film;
+        std::size_t cut = 0, whole = 0, by_facets = 0, agree = 0;
+        for (const Engine engine : {Engine::kLimitTruth, Engine::kExact})
+            for (int y = 20; y < film.height; y += 40)
+                for (int x = 20; x < film.width; x += 40) {
+                    PictureRequest picture;
+                    picture.engine = engine;
+                    const PixelExplanation pixel = renderer.explain(picture, x, y);
+                    if (engine == Engine::kLimitTruth && pixel.optic != kNone) CHECK(pixel.traced);
+                    for (const PixelEnd& end : pixel.ends) {
+                        if (!end.principal) continue;
+                        std::string word;
+                        for (const Step& step : end.steps)
+                            if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
+                        ShootRequest along;
+                        along.path = EventWord(word);
+                        const Vec2 middle(x + 0.5, y + 0.5);
+                        const ShotRay shot = renderer.shoot(std::span(&middle, 1), along).rays[0];
+                        if (!shot.followed()) continue;
+                        if (engine == Engine::kExact) {
+                            ++by_facets, agree += end.cut == shot.cut;
+                            continue;
+                        }
+                        CHECK(end.cut == shot.cut);
+                        ++(shot.cut ? cut : whole);
+                    }
+                }
+        CHECK(cut > 3);
+        CHECK(whole > 5);
+        CHECK(agree == by_facets);
+    }
 }

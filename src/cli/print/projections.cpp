@@ -172,7 +172,8 @@ Json end_json(const Renderer& renderer, const PixelEnd* end) {
             {"weight", vector_json(end->weight)},
             {"ray", ray_json(end->ray)},
             {"facet_kind", kind_json(end->facet_kind)},
-            {"sees", hit_json(renderer, end->hit)}};
+            {"sees", hit_json(renderer, end->hit)},
+            {"cut", end->cut}};
 }
 
 }  // namespace

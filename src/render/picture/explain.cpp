@@ -1,5 +1,7 @@
 #include "render/picture/explain.h"
 
+#include <algorithm>
+#include <limits>
 #include <span>
 
 #include "base/raymesh/rasterize.h"
@@ -30,7 +32,7 @@ void describe_optic(const World& world, const Viewer& viewer, const SampleViews&
     const OpticWeights first = first_weights(world, shown, view);
     explained.optic = view.optic;
     explained.facet = view.facet;
-    explained.traced = view.traced;
+    explained.traced = view.traced || !viewer.has_facets();
     explained.level = view.level;
     const OpticView& on_optic = shown.on_optic(view);
     explained.uv = on_optic.uv;
@@ -45,6 +47,35 @@ void describe_optic(const World& world, const Viewer& viewer, const SampleViews&
         if (end.node == kNone || view.leaf == kNone || !viewer.has_facets()) continue;
         const PathNode& node = viewer.paths(view.optic).nodes[end.node];
         explained.ends.back().facet_kind = facet_kind(node.mesh, node.facet_of(view.leaf));
+    }
+}
+
+/// Which paths the bound of their depth has ended, by the exact ones of the pixel's ray.
+void mark_cut(const World& world, Engine engine, const SampleViews& shown, PixelExplanation& explained) {
+    const SampleView& view = shown.samples.front();
+    const std::optional<SurfaceHit> hit = limit_tracer(world, view.optic).first_hit(view.ray);
+    if (!hit) return;
+    PathWorld paths = path_world(world);
+    if (!follows_paths(engine)) paths.max_depth = 0;
+    const Vec3 incoming = normalize_or_zero(view.ray.direction);
+    const Meeting first{view.optic, incoming, hit->point.position, hit->point.normal,
+                        dot(incoming, hit->point.normal) <= 0};
+    const std::vector<PathSegment> segments =
+        follow_paths(paths, {first, hit->t * length(view.ray.direction), shown.around_of(view)},
+                     {.objects = &object_tracer(world)})
+            .segments;
+    for (const PathSegment& last : segments) {
+        if (!last.ends) continue;
+        double cut = last.cut;
+        if (paths.max_depth == 0)  // paths that end at once do not ask what would come next
+            if (const auto next = next_optic(paths, {last.ray, last.step.optic, Media()}))
+                cut = next->distance;
+        if (!(cut < (last.hit.seen() ? last.hit.t : std::numeric_limits<double>::infinity()))) continue;
+        std::vector<Step> steps{last.step};
+        for (Id s = last.parent; s != kNone; s = segments[s].parent) steps.push_back(segments[s].step);
+        std::reverse(steps.begin(), steps.end());
+        for (PixelEnd& end : explained.ends)
+            end.cut = end.cut || (end.steps == steps && end.colours == last.colours);
     }
 }
 
@@ -72,7 +103,10 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     explained.ray = view.ray;
     explained.hit = view.hit;
     explained.depth = view.depth;
-    if (view.optic != kNone) describe_optic(world, *viewer, shown, explained);
+    if (view.optic != kNone) {
+        describe_optic(world, *viewer, shown, explained);
+        mark_cut(world, request.engine.engine, shown, explained);
+    }
     if (viewer->has_facets()) name_camera_facet(world, request.frame.camera, grid, explained);
     const RayDifferentials differentials(world, *viewer, grid);
     const SampleColour colour = sample_colour(world, shown, view, &differentials);

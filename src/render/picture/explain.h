@@ -18,6 +18,7 @@ struct PixelEnd : PathEnd {
     std::vector<Step> steps;  // the meetings with optics, the first among them
     std::optional<GeneralLinearKind>
         facet_kind;  // across the mean of its corner rays; none: no facet was used
+    bool cut = false;  // it would meet another optic, but maxDepth ends it: what it sees lies straight on
 };
 
 /// What the centre of a pixel shows, and how. Facets are named after the general linear cameras (Yu and

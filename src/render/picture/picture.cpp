@@ -126,9 +126,10 @@ void tell_omissions(const World& world, Engine engine, const LayerStatistics& st
         const auto pixels = static_cast<double>(statistics.optic_pixels);
         if (statistics.deep_sum > kToldShare * pixels)
             warn(fmt::format(
-                "paths end after {} optics (maxDepth {}): {} of {} pixels on optics lack light that would go "
+                "paths end after {} optics (maxDepth {}): at {} of {} pixels on optics light that would go "
                 "on "
-                "to another, {:.1f} % in the mean, up to {:.1f} %; light that runs along a hollow mirror, or "
+                "to another is drawn straight on, past it, {:.1f} % in the mean, up to {:.1f} %; light that "
+                "runs along a hollow mirror, or "
                 "inside a wall of glass, meets them many times",
                 settings.max_depth + 1, settings.max_depth, statistics.deep_pixels, statistics.optic_pixels,
                 100 * statistics.deep_sum /
