@@ -145,7 +145,7 @@ void bind_fit(py::module_& module) {
             "The same where the fit began.")
         .def_property_readonly(
             "noise", [](const PythonFit& self) { return self.noise; },
-            "Pixels in x and in y that the residuals of used pairs show; 0: too few.")
+            "Pixels in x and in y that residuals show, whatever sigma says; robust. 0: too few.")
         .def_property_readonly(
             "iterations", [](const PythonFit& self) { return self.iterations; }, "Steps taken.")
         .def_property_readonly(
@@ -183,7 +183,7 @@ void bind_fit(py::module_& module) {
             return fit(scene, arguments, call);
         },
         py::arg("scene"), py::arg("pixels"), py::arg("points"), py::arg("free"), py::kw_only(),
-        py::arg("sigma") = 0.5, py::arg("huber") = 4.0, py::arg("priors") = py::dict(), py::arg("path") = "",
+        py::arg("sigma") = 0.5, py::arg("huber") = 8.0, py::arg("priors") = py::dict(), py::arg("path") = "",
         py::arg("match") = "ray", py::arg("camera") = py::none(), py::arg("max_iterations") = 100,
         py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Parameters of a scene from pixels and the world points that are seen there, over mirrors and "
@@ -193,7 +193,7 @@ void bind_fit(py::module_& module) {
         "free: JSON pointers of numbers or arrays of numbers of cameras, optics and materials; a mesh's\n"
         "  quaternion transform/rotate is three turns about the world's axes, in degrees.\n"
         "sigma: standard deviation of the pixels, one or N.\n"
-        "huber: pixels from which a residual counts linearly; inf: never.\n"
+        "huber: sigmas of its pair from which a residual counts linearly; inf: never.\n"
         "priors: {pointer: (value, sigma)} that hold free numbers near values.\n"
         "path: what happens at the optics that a ray meets: \"R\", \"TT\", \"R?\"; \"D\": seen directly;\n"
         "  \"\": mirrors reflect, glass transmits.\n"

@@ -1002,7 +1002,7 @@ def fit(
     free: Sequence[str],
     *,
     sigma: Union[float, Sequence[float]] = 0.5,
-    huber: float = 4.0,
+    huber: float = 8.0,
     priors: Mapping[str, Tuple[Union[float, Sequence[float]], float]] = {},
     path: str = "",
     match: str = "ray",

@@ -18,7 +18,7 @@ struct CalibrationOptions {
     SceneOptions scene;
     std::string points, output, report, path;
     std::vector<std::string> free, prior;
-    std::string loss = "huber:4", match = "ray";
+    std::string loss = "huber:8", match = "ray";
     double sigma = 0.5;
 };
 
@@ -32,9 +32,9 @@ double number_of(const std::string& text, const std::string& what) {
 
 double huber_of(const std::string& loss) {
     if (loss == "none") return std::numeric_limits<double>::infinity();
-    if (!loss.starts_with("huber:")) throw UsageError("--loss is none or huber:PIXELS, not \"" + loss + "\"");
+    if (!loss.starts_with("huber:")) throw UsageError("--loss is none or huber:SIGMAS, not \"" + loss + "\"");
     const double threshold = number_of(loss.substr(6), "--loss huber:");
-    if (!(threshold > 0)) throw UsageError("--loss huber: needs pixels above 0, not " + loss.substr(6));
+    if (!(threshold > 0)) throw UsageError("--loss huber: needs a number above 0, not " + loss.substr(6));
     return threshold;
 }
 
@@ -158,7 +158,7 @@ Command fit_command() {
            .value = "PRIOR"},
           {.names = "--loss",
            .target = &options->loss,
-           .help = "huber:PIXELS, from which a residual counts linearly, or none",
+           .help = "huber:SIGMAS, standard deviations from which a residual counts linearly, or none",
            .value = "LOSS"},
           {.names = "--path",
            .target = &options->path,

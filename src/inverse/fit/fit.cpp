@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/math/box.h"
 #include "base/util/error.h"
@@ -17,6 +18,7 @@ namespace trilens {
 namespace {
 
 constexpr double kHighCorrelation = 0.95;
+constexpr double kMuchNoise = 2;  // sigmas
 
 std::size_t camera_named(const Scene& scene, const std::string& name) {
     if (name.empty()) return scene.own_camera;
@@ -164,25 +166,79 @@ std::string events_of(const FitPair& pair) {
     return word;
 }
 
+/// The standard deviation in x and in y of residuals with these lengths, of which less than half are wrong:
+/// the fixed point of the mean square within kNoiseCut of it, which of normal residuals is kNoiseShare of the
+/// whole. `freedom`: how many numbers more there are than unknowns.
+double noise_of(std::vector<double> lengths, double freedom) {
+    constexpr double kNoiseCut = 3, kMedianLength = 1.1774100225154747;  // sqrt(2 ln 2)
+    const double beyond = std::exp(-kNoiseCut * kNoiseCut / 2);
+    const double share = 1 - kNoiseCut * kNoiseCut / 2 * beyond / (1 - beyond);
+    if (lengths.empty() || !(freedom > 0)) return 0;
+    std::sort(lengths.begin(), lengths.end());
+    double noise = lengths[lengths.size() / 2] / kMedianLength;
+    for (int k = 0; k < 100; ++k) {
+        double squares = 0, count = 0;
+        for (const double length : lengths)
+            if (length <= kNoiseCut * noise) squares += length * length, ++count;
+        const double last = std::exchange(noise, std::sqrt(squares / (2 * count * share)));
+        if (std::abs(noise - last) <= 1e-12 * last) break;
+    }
+    return noise * std::sqrt(2 * static_cast<double>(lengths.size()) / freedom);
+}
+
 void tell_pairs(FitProblem& problem, const Linearisation& at, double huber, FitResult& result) {
     const double none = std::numeric_limits<double>::quiet_NaN();
-    double squares = 0;
+    std::vector<double> lengths;  // in sigmas
+    double variances = 0;
     for (std::size_t i = 0; i < problem.pairs().size(); ++i) {
         const FitPair& pair = problem.pairs()[i];
         FittedPair told{PairState::kLost, Vec2(none), events_of(pair)};
         if (!pair.is_lost) {
             told.residual = pair.sigma * Vec2(at.residuals[2 * i], at.residuals[2 * i + 1]);
-            const double size = length(told.residual);
-            told.state = size > huber ? PairState::kOutlier : PairState::kUsed;
-            if (told.state == PairState::kUsed) squares += size * size;
+            lengths.push_back(length(told.residual) / pair.sigma);
+            variances += pair.sigma * pair.sigma;
+            told.state = lengths.back() > huber ? PairState::kOutlier : PairState::kUsed;
         }
         result.used += told.state == PairState::kUsed;
         result.lost += told.state == PairState::kLost;
         result.outliers += told.state == PairState::kOutlier;
         result.pairs.push_back(std::move(told));
     }
-    const double freedom = 2.0 * static_cast<double>(result.used) - static_cast<double>(result.rank);
-    if (freedom > 0) result.noise = std::sqrt(squares / freedom);
+    if (lengths.empty()) return;
+    const auto count = static_cast<double>(lengths.size());
+    const double stated = std::sqrt(variances / count);
+    result.noise = stated * noise_of(std::move(lengths), 2 * count - static_cast<double>(result.rank));
+    if (result.noise > kMuchNoise * stated)
+        result.warnings.push_back(fmt::format(
+            "the pixels' noise turned out to be {:.3g} px, and sigma says {:.3g}: the standard deviations "
+            "that are told follow the latter, and so does what counts as an outlier",
+            result.noise, stated));
+}
+
+void warn_of_pairs(double huber, FitResult& result) {
+    const std::size_t count = result.pairs.size();
+    if (result.lost > 0)
+        result.warnings.push_back(
+            fmt::format("{} of {} pairs are lost: their rays miss the optics, or their points "
+                        "have no image near",
+                        result.lost, count));
+    if (2 * result.outliers > count)
+        result.warnings.push_back(fmt::format(
+            "{} of {} pairs are outliers, more than {:g} sigma from their images: what was found fits few of "
+            "them, and its standard deviations hold for those alone; are points in the scene's unit, and "
+            "pixels those of its film?",
+            result.outliers, count, huber));
+    else if (result.outliers > 0)
+        result.warnings.push_back(
+            fmt::format("{} of {} pairs are outliers, more than {:g} sigma from their images: they pull a "
+                        "little all the same, of "
+                        "which standard deviations know nothing; what is left out of the file pulls no more",
+                        result.outliers, count, huber));
+    constexpr double kNoRise = 1e-3;  // pixels
+    if (result.rms > result.rms_start + kNoRise)
+        result.warnings.push_back(fmt::format(
+            "the rms rose, from {:.4g} to {:.4g} px: some pairs fit worse than before, or others are lost",
+            result.rms_start, result.rms));
 }
 
 void tell_uncertainty(const FitProblem& problem, const Uncertainty& found, FitResult& result) {
@@ -251,7 +307,8 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
 
     FitProblem problem(scene, document, parameters, std::move(pairs));
     problem.priors = priors;
-    problem.huber = request.huber / request.sigma;
+    problem.huber = request.huber;
+    problem.finds_paths = request.match != FitMatch::kId;
     problem.progress = &progress;
     FitResult result;
     LeastSquaresParams params;
@@ -289,23 +346,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     tell_uncertainty(problem, uncertainty_of(reweighted(problem.least_squares(), last).jacobian), result);
     tell_pairs(problem, last, request.huber, result);
     result.rms = rms_of(problem.pairs(), last.residuals);
-    if (result.lost > 0)
-        result.warnings.push_back(
-            fmt::format("{} of {} pairs are lost: their rays miss the optics, or their points "
-                        "have no image near",
-                        result.lost, given.size()));
-    if (2 * result.outliers > given.size())
-        result.warnings.push_back(fmt::format(
-            "{} of {} pairs are outliers, more than {:g} px from their images: what was found fits few of "
-            "them, and its standard deviations hold for those alone; are points in the scene's unit, and "
-            "pixels those of its film?",
-            result.outliers, given.size(), request.huber));
-    else if (result.outliers > 0)
-        result.warnings.push_back(
-            fmt::format("{} of {} pairs are outliers, more than {:g} px from their images: they pull a "
-                        "little all the same, of "
-                        "which standard deviations know nothing; what is left out of the file pulls no more",
-                        result.outliers, given.size(), request.huber));
+    warn_of_pairs(request.huber, result);
     tell_changes(problem, result);
     result.document = problem.document().dump(2) + "\n";
     return result;

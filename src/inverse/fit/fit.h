@@ -54,7 +54,7 @@ struct FitRequest {
     /// nothing, the point is seen directly. Empty: mirrors reflect, glass transmits.
     std::string path;
     FitMatch match = FitMatch::kRay;
-    double huber = 4;    // pixels from which a residual counts linearly; infinite: it never does
+    double huber = 8;    // sigmas of its pair from which a residual counts linearly; infinite: it never does
     double sigma = 0.5;  // pixels: of pairs that have none of their own
     int most_iterations = 100;
 };
@@ -72,8 +72,8 @@ constexpr const char* pair_state_name(PairState state) {
     return state == PairState::kUsed ? "used" : state == PairState::kLost ? "lost" : "outlier";
 }
 
-/// A pair after the fit. Lost: its ray does not meet what the path says, or its point has no image near.
-/// Outlier: it lies beyond FitRequest::huber.
+/// A pair after the fit. Lost: its ray does not meet what the path says, or its point has no image near over
+/// the optics that its ray meets. Outlier: it lies beyond FitRequest::huber.
 struct FittedPair {
     PairState state = PairState::kUsed;
     Vec2 residual{0};  // pixels: image of the point minus pixel; NaN where lost
@@ -87,13 +87,17 @@ struct FitResult {
     std::vector<FittedPair> pairs;                 // in order
     std::size_t used = 0, lost = 0, outliers = 0;
     double rms_start = 0, rms = 0;  // pixels, over pairs that are not lost: root of the mean of dx^2 + dy^2
-    double noise = 0;  // pixels: standard deviation that the residuals of used pairs show; 0: too few
+    /// Pixels in x and in y: the standard deviation that residuals show, of pairs that are not lost. Robust:
+    /// the median of their lengths to begin with, then the mean square of those within three of what it turns
+    /// out to be, corrected for what lies beyond. Of pairs with sigmas of their own: the root mean square of
+    /// those, times the factor that residuals show. 0: too few.
+    double noise = 0;
     int iterations = 0;
     bool converged = false;
     std::size_t rank = 0;                           // below the number of parameters: see undetermined
     std::vector<std::string> undetermined;          // motions that no pair tells of, in words
     std::vector<std::vector<double>> null_vectors;  // the same: unit vectors of parameters in large steps
-    std::vector<std::string> warnings;              // of correlated parameters, and of pairs
+    std::vector<std::string> warnings;              // of correlated parameters, of pairs, of a rms that rose
     std::vector<SceneOverride> changes;             // what carries the scene's JSON to the fitted one
     std::string document;                           // the fitted scene's JSON
 };

@@ -1,5 +1,6 @@
 #include "inverse/fit/fit_problem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -12,8 +13,8 @@
 namespace trilens {
 namespace {
 
-/// The residual of a lost pair, pixels: constant, so that it pulls nowhere, and no reward for losing it.
-constexpr double kLostResidual = 20;
+/// The residual of a lost pair, in sigmas: constant, so that it pulls nowhere, and no reward for losing it.
+constexpr double kLostResidual = 40;
 /// Of a large step of a parameter: for central differences. Places and tangents are linear in most
 /// parameters; in the others what is left out is below 1e-9 of the derivative.
 constexpr double kDifference = 1e-5;
@@ -25,6 +26,20 @@ constexpr double kLongestImageStep = 50;  // pixels
 
 Vec2 seen_offset(const std::array<Vec3, 2>& metric, const Vec3& offset) {
     return {dot(metric[0], offset), dot(metric[1], offset)};
+}
+
+/// Whether a pair's path is known, if only how many events it has.
+bool knows_path(const FitPair& pair) {
+    return pair.events > 0 || pair.word == "D";
+}
+
+/// Whether a ray's path begins with the pair's: the same optics, each reflecting or transmitting as before.
+bool keeps_path(const ShotPath& path, const FitPair& pair) {
+    if (path.events.size() < pair.events) return false;
+    return std::equal(pair.path.begin(), pair.path.end(), path.events.begin(),
+                      [](const OpticEvent& was, const OpticEvent& is) {
+                          return was.optic == is.optic && was.reflects == is.reflects;
+                      });
 }
 
 }  // namespace
@@ -91,10 +106,14 @@ std::optional<ShotPath> FitProblem::shoot(const FitScene& scene, const FitPair& 
 
 /// Newton's method on the film: the ray through a place, and how its image of the point moves from there.
 std::optional<FitProblem::Image> FitProblem::image_of(const FitScene& scene, const FitPair& pair) const {
+    if (!knows_path(pair)) return std::nullopt;
     Image image{pair.guess, {}};
-    std::optional<ShotPath> path = shoot(scene, pair, image.pixel);
+    const auto follow = [&](const Vec2& pixel) {
+        std::optional<ShotPath> shot = shoot(scene, pair, pixel);
+        return shot && keeps_path(*shot, pair) ? std::move(shot) : std::nullopt;
+    };
+    std::optional<ShotPath> path = follow(image.pixel);
     for (int k = 0; path && k < kMostImageSteps; ++k) {
-        if (path->events.size() < pair.events) return std::nullopt;
         cut_path(*path, pair.events);
         const Vec3 nearest = nearest_on_last(*path, pair.point);
         const std::optional<PathDerivatives> derivatives =
@@ -111,7 +130,7 @@ std::optional<FitProblem::Image> FitProblem::image_of(const FitScene& scene, con
         // A ray beside the optic: half of the step stays on it, or a half of that.
         std::optional<ShotPath> next;
         for (int half = 0; half < 8 && !next; ++half, step *= 0.5) {
-            next = shoot(scene, pair, image.pixel + step);
+            next = follow(image.pixel + step);
             if (next) image.pixel += step;
         }
         path = std::move(next);
@@ -119,23 +138,33 @@ std::optional<FitProblem::Image> FitProblem::image_of(const FitScene& scene, con
     return std::nullopt;
 }
 
+void FitProblem::take_path(FitPair& pair) const {
+    std::optional<ShotPath> path = shoot(scene_, pair, pair.pixel);
+    if (!path || path->events.empty()) return;
+    pair.events = events_towards(*path, pair.point);
+    cut_path(*path, pair.events);
+    pair.guess = pair.pixel;
+    pair.path = std::move(path->events);
+}
+
 Vec2 FitProblem::linearise_pair(FitPair& pair, std::span<const ParameterDifference> parameters,
                                 DenseMatrix& jacobian, std::size_t row) const {
     pair.is_lost = true;
-    Vec2 off(kLostResidual, 0);
+    Vec2 off(kLostResidual * pair.sigma, 0);
     std::optional<PathDerivatives> derivatives;
     if (residual == FitResidual::kRay) {
         std::optional<ShotPath> path = shoot(scene_, pair, pair.pixel);
         if (!path || (path->events.empty() && pair.word != "D")) return off;
-        pair.events = events_towards(*path, pair.point);
-        cut_path(*path, pair.events);
+        cut_path(*path, events_towards(*path, pair.point));
         const Vec3 nearest = nearest_on_last(*path, pair.point);
         derivatives = path_derivatives(scene_, {pair.camera, pair.pixel}, path->events, nearest, parameters);
         if (!derivatives) return off;
         off = seen_offset(derivatives->by_point, pair.point - nearest);
         pair.guess = pair.pixel;
+        pair.events = path->events.size();
         pair.path = std::move(path->events);
     } else {
+        if (finds_paths && !knows_path(pair)) take_path(pair);
         std::optional<Image> image = image_of(scene_, pair);
         if (!image) return off;
         derivatives =
@@ -191,8 +220,9 @@ std::optional<std::vector<double>> FitProblem::residuals_after(std::span<const d
     std::vector<double> residuals(2 * pairs_.size());
     parallel_for(pairs_.size(), kPairsPerThread, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
+            const double sigma = pairs_[i].sigma;
             const Vec2 off =
-                trial_residual(pairs_[i], scene).value_or(Vec2(kLostResidual, 0)) / pairs_[i].sigma;
+                trial_residual(pairs_[i], scene).value_or(Vec2(kLostResidual * sigma, 0)) / sigma;
             residuals[2 * i] = off.x, residuals[2 * i + 1] = off.y;
         }
     });

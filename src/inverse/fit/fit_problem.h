@@ -201,10 +201,10 @@ struct FitPair {
     std::string word;
 
     Vec2 guess{0};           // kImage: where its image was last
-    std::size_t events = 0;  // of its path
+    std::size_t events = 0;  // of its path; 0 and no "D": none is known yet, the pair is lost
     bool is_lost = false;
     std::array<Vec3, 2> metric{};  // dx/dX at the last linearisation
-    std::vector<OpticEvent> path = {};
+    std::vector<OpticEvent> path = {};  // at the last linearisation where it was not lost; may be empty
 };
 
 /// Residuals are in units of the pairs' sigmas; unknowns in the parameters' scales. The scene must live
@@ -220,7 +220,9 @@ class FitProblem {
     };
 
     std::vector<Prior> priors;
-    double huber = 4;  // pixels; of a pair in units of its own sigma
+    double huber = 8;  // of a pair in units of its own sigma
+    /// kImage: a pair without a path takes that of its pixel's ray, as soon as there is one.
+    bool finds_paths = true;
     FitResidual residual = FitResidual::kRay;
     const Progress* progress = nullptr;
 
@@ -236,6 +238,7 @@ class FitProblem {
     std::optional<std::vector<double>> residuals_after(std::span<const double> step);
     bool move(std::span<const double> step, Json& document, FitScene& scene) const;
     std::vector<ParameterDifference> differences() const;
+    void take_path(FitPair& pair) const;
     Vec2 linearise_pair(FitPair& pair, std::span<const ParameterDifference> parameters, DenseMatrix& jacobian,
                         std::size_t row) const;
     std::optional<Vec2> trial_residual(const FitPair& pair, const FitScene& scene) const;

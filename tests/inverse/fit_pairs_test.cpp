@@ -1,0 +1,129 @@
+// Pairs of a fit: which are lost, which lie far off, and what noise all of them show.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/util/format.h"
+#include "fit_scenes.h"
+#include "inverse/fit/fit.h"
+#include "scene/read/override.h"
+#include "support/test.h"
+#include "trilens/project.h"
+#include "trilens/scene.h"
+
+using namespace trilens;
+using trilens_test::make_pairs;
+using trilens_test::with_noise;
+
+namespace {
+
+/// A ball whose centre and one more number are free, and where its fit begins.
+struct StartedBall {
+    std::string json, word;
+    std::vector<SceneOverride> start;
+    std::vector<std::string> free;
+};
+
+std::vector<StartedBall> started_balls() {
+    const SceneOverride center{"/meshes/0/primitive/center", "[0.1, 0.05, -0.08]"};
+    return {{trilens_test::ball_scene(),
+             "R",
+             {center, {"/meshes/0/primitive/radius", "0.93"}},
+             {"/meshes/0/primitive/center", "/meshes/0/primitive/radius"}},
+            {trilens_test::glass_scene(),
+             "TT",
+             {center, {"/materials/glass/ior", "1.42"}},
+             {"/meshes/0/primitive/center", "/materials/glass/ior"}}};
+}
+
+}  // namespace
+
+TEST_CASE("a pair that shows a point beside the optic is lost, and is not held against its direct image",
+          "[inverse]") {
+    for (const StartedBall& one : started_balls()) {
+        INFO(one.word);
+        const Scene truth = parse_scene(one.json);
+        std::vector<Correspondence> pairs = with_noise(make_pairs(truth, 60, one.word), 0.5, 3);
+        FitRequest request;
+        request.free = one.free;
+        request.huber = std::numeric_limits<double>::infinity();
+        const FitResult without = fit_scene(parse_scene(one.json, "", one.start), pairs, request);
+        // Seen past the ball, where the camera shows the point itself.
+        const std::vector<Vec3> beside{{2, 1.2, -1}};
+        Correspondence direct;
+        direct.point = beside[0];
+        const std::vector<WorldImage> seen = Renderer(truth).project(beside)[0].images;
+        REQUIRE(seen[0].path == Path::kDirect);
+        direct.pixel = seen[0].pixel + Vec2(9, 0);
+        pairs.push_back(direct);
+        for (const FitMatch match : {FitMatch::kRay, FitMatch::kNearest}) {
+            request.match = match;
+            const FitResult found = fit_scene(parse_scene(one.json, "", one.start), pairs, request);
+            if (match == FitMatch::kNearest && found.pairs.back().state != PairState::kLost) continue;
+            CHECK(found.lost == 1);
+            CHECK(found.pairs.back().state == PairState::kLost);
+            CHECK(found.used == pairs.size() - 1);
+            CHECK(std::abs(found.rms - without.rms) < 1e-6);
+            for (std::size_t p = 0; p < found.parameters.size(); ++p)
+                CHECK(std::abs(found.parameters[p].value - without.parameters[p].value) < 1e-7);
+            CHECK(std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& warning) {
+                return warning.find("1 of 61 pairs are lost") == 0;
+            }));
+        }
+    }
+}
+
+TEST_CASE("the noise that a fit tells is that of the pixels, whatever sigma says", "[inverse][law]") {
+    const StartedBall one = started_balls()[0];
+    const std::vector<Correspondence> pairs = make_pairs(parse_scene(one.json), 300, "R");
+    FitRequest request;
+    request.free = one.free;
+    for (const double noise : {0.5, 2.0, 3.0, 5.0, 8.0}) {
+        std::vector<Correspondence> noisy = with_noise(pairs, noise, 11);
+        for (const bool is_told : {false, true}) {
+            INFO(noise << " px" << (is_told ? ", told" : ""));
+            request.sigma = is_told ? noise : 0.5;
+            const FitResult found = fit_scene(parse_scene(one.json, "", one.start), noisy, request);
+            CHECK(std::abs(found.noise / noise - 1) < 0.1);
+            if (!is_told) continue;
+            // The limit is in standard deviations: at 8 no normal pixel lies beyond.
+            CHECK(found.outliers == 0);
+            for (Correspondence& pair : noisy) pair.sigma = noise;
+            request.sigma = 0.5;
+            const FitResult by_pair = fit_scene(parse_scene(one.json, "", one.start), noisy, request);
+            CHECK(by_pair.outliers == 0);
+            CHECK(std::abs(by_pair.noise - found.noise) < 1e-6);
+        }
+        // A tenth of wrong pairs hardly moves it.
+        request.sigma = noise;
+        for (std::size_t i = 0; i < noisy.size(); i += 10)
+            noisy[i].pixel += 20 * noise * normalize(Vec2(512, 384) - noisy[i].pixel);
+        CHECK(std::abs(fit_scene(parse_scene(one.json), noisy, request).noise / noise - 1) < 0.15);
+    }
+}
+
+TEST_CASE("a fit whose rms rose says so", "[inverse]") {
+    const Scene truth = parse_scene(trilens_test::ball_scene());
+    const std::vector<Correspondence> pairs = make_pairs(truth, 20, "R");
+    FitRequest request;
+    request.free = {"/meshes/0/primitive/radius"};
+    request.priors = {{"/meshes/0/primitive/radius", {1.05}, 1e-5}};
+    const FitResult found = fit_scene(truth, pairs, request);
+    REQUIRE(found.rms > found.rms_start);
+    CHECK(std::any_of(found.warnings.begin(), found.warnings.end(),
+                      [](const std::string& warning) { return warning.find("the rms rose, from ") == 0; }));
+}
+
+TEST_CASE("a fit that agrees with few pairs says so", "[inverse]") {
+    const Scene scene = parse_scene(trilens_test::ball_scene());
+    std::vector<Correspondence> pairs = make_pairs(scene, 12, "R");
+    FitRequest request;
+    request.free = {"/meshes/0/primitive/radius"};
+    CHECK(fit_scene(scene, pairs, request).warnings.empty());
+    for (std::size_t i = 0; i < 9; ++i) pairs[i].pixel += (i % 2 == 0 ? 1.0 : -1.0) * Vec2(9, -12);
+    const FitResult found = fit_scene(scene, pairs, request);
+    REQUIRE(2 * found.outliers > pairs.size());
+    const std::string says = fmt::format("{} of {} pairs are outliers", found.outliers, pairs.size());
+    CHECK(std::any_of(found.warnings.begin(), found.warnings.end(),
+                      [&](const std::string& warning) { return warning.find(says) == 0; }));
+}
