@@ -90,7 +90,8 @@ std::optional<Vec3> refracted(const Vec3& incoming, const Vec3& unit_normal, dou
     // The part along the surface. A ray beyond grazing is laid into the surface first.
     const double cosine = -dot(unit, unit_normal);
     Vec3 along = unit + cosine * unit_normal;
-    if (cosine < 0) along /= length(along);
+    if (cosine < 0) along = normalize_or_zero(along);
+    if (cosine < 0 && along == Vec3(0)) return std::nullopt;
     const Vec3 tangential = eta * along;
     const double sin2 = dot(tangential, tangential);
     if (sin2 > 1) return std::nullopt;

@@ -1,4 +1,4 @@
-// Where all of a light's beams end: by rays, and where not all of a beam's tell of an object, by the area
+// Where all of a light's beams end: by rays, and where none of a beam's tells of an object, by the area
 // that its triangles cut out of the beam.
 #include "caustics/flux_ends.h"
 
@@ -39,7 +39,7 @@ class BeamDivider {
     BeamDivider(const FluxQuery& query, Id beam, double faint)
         : refined_(query.refined), beams_(query.beams), optics_(query.optics), beam_(beam), faint_(faint) {}
 
-    BeamFluxEnds sum() {
+    FluxEnds sum() {
         const LightBeam& beam = beams_.beams[beam_];
         const BeamEnds end = corners_of(beams_, beam).end;
         const bool is_in_air = beams_.histories[beam.history].medium == kNone;
@@ -52,7 +52,6 @@ class BeamDivider {
             refined_.look_ahead(beam_, middle);
             are_alike = kind_of(middle) == kind;
         }
-        sum_.is_sure = are_alike && kind == EndKind::kObject;
         if (are_alike) {
             // Exact for quadratic light: at a rim, where Fresnel's weights are steep, corners say too much.
             Vec3 left(0);
@@ -111,17 +110,17 @@ class BeamDivider {
     const PathWorld& optics_;
     const Id beam_;
     const double faint_;
-    BeamFluxEnds sum_;
+    FluxEnds sum_;
     std::map<Side, BeamEnd, Before> middles_;  // neighbouring parts share them
 };
 
 }  // namespace
 
-std::vector<BeamFluxEnds> flux_ends_by_rays(const FluxQuery& query) {
+std::vector<FluxEnds> flux_ends_by_rays(const FluxQuery& query) {
     const Beams& beams = query.beams;
     const Vec3 arriving = beams.flux_arriving();
     const double faint = kFaintEnd * (arriving.x + arriving.y + arriving.z);
-    std::vector<BeamFluxEnds> of_beam(beams.beams.size());
+    std::vector<FluxEnds> of_beam(beams.beams.size());
     parallel_for(of_beam.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i)
             of_beam[i] = BeamDivider(query, static_cast<Id>(i), faint).sum();
@@ -154,9 +153,9 @@ Receiver side_of_triangle(const TriangleScene& scene, std::size_t t, bool is_bac
 }  // namespace
 
 FluxEnds BeamLight::flux_ends(const TriangleScene& objects) const {
-    std::vector<BeamFluxEnds> of_beam = flux_ends_by_rays({*refined_, beams_, *space_.optics});
-    std::vector<char> is_unsure(of_beam.size());
-    for (std::size_t i = 0; i < of_beam.size(); ++i) is_unsure[i] = !of_beam[i].is_sure;
+    const std::vector<FluxEnds> of_beam = flux_ends_by_rays({*refined_, beams_, *space_.optics});
+    std::vector<char> asks_area(of_beam.size());
+    for (std::size_t i = 0; i < of_beam.size(); ++i) asks_area[i] = of_beam[i].on_objects == Vec3(0);
 
     const std::size_t blocks = (objects.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce;
     std::vector<std::vector<BeamFlux>> found(blocks);
@@ -166,7 +165,7 @@ FluxEnds BeamLight::flux_ends(const TriangleScene& objects) const {
              ++t)
             for (const bool is_back : {false, true})
                 for_each_flux(
-                    side_of_triangle(objects, t, is_back, offset), is_unsure,
+                    side_of_triangle(objects, t, is_back, offset), asks_area,
                     [&](Id beam, const Vec3& flux) { found[t / kTrianglesAtOnce].emplace_back(beam, flux); });
     });
     std::vector<Vec3> by_area(of_beam.size(), Vec3(0));
@@ -177,7 +176,7 @@ FluxEnds BeamLight::flux_ends(const TriangleScene& objects) const {
     for (std::size_t i = 0; i < of_beam.size(); ++i) {
         const FluxEnds& by_rays = of_beam[i];
         const Vec3 on_objects =
-            is_unsure[i] ? glm::min(by_area[i], beams_.beams[i].flux) : by_rays.on_objects;
+            asks_area[i] ? glm::min(by_area[i], beams_.beams[i].flux) : by_rays.on_objects;
         all.on_objects += on_objects;
         all.away += glm::max(Vec3(0), by_rays.away + by_rays.on_objects - on_objects);
     }

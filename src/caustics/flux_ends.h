@@ -13,11 +13,6 @@ struct FluxEnds {
     Vec3 away{0};        // what goes away from the scene
 };
 
-/// One beam's.
-struct BeamFluxEnds : FluxEnds {
-    bool is_sure = false;  // all rays that were asked end on objects
-};
-
 struct FluxQuery {
     const RefinedBeams& refined;  // of these beams
     const Beams& beams;
@@ -27,6 +22,6 @@ struct FluxQuery {
 /// By beam. One whose corners and middles of sides do not all end alike is divided by exact rays; one in a
 /// body of glass is shared out by its corners. An object that is smaller than a beam and at none of these
 /// places gets nothing.
-std::vector<BeamFluxEnds> flux_ends_by_rays(const FluxQuery& query);
+std::vector<FluxEnds> flux_ends_by_rays(const FluxQuery& query);
 
 }  // namespace trilens

@@ -62,7 +62,7 @@ AnamorphRequest request_of(const AnamorphOptions& options, const Renderer& rende
     console.files().reads({options.picture});
     request.picture = read_photo(options.picture).picture;
     request.picture_name = options.picture;
-    if (!request.picture->alpha.empty())
+    if (!request.picture->alpha.empty() && !request.picture->is_premultiplied)
         console.warn(options.picture + ": its alpha is not looked at: colours that it hides are printed");
     return request;
 }

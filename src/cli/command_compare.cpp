@@ -122,6 +122,9 @@ void check_options(const CompareRequest& request, Console& console) {
     if (request.strict && !(request.layer_of_reference + request.layer_of_test).empty())
         throw UsageError("--strict compares files as they are, without --ref-layer and --test-layer");
     console.files().reads({request.reference, request.test});
+    for (const std::string& file : {request.reference, request.test})
+        if (request.strict && is_png(file))
+            throw InputError(file, "", "is no OpenEXR image: --strict compares those, channel by channel");
     console.files().writes(request.difference);
 }
 
@@ -245,7 +248,8 @@ std::vector<Option> image_options(CompareCommand& command) {
          .value = "L"},
         {.names = "--strict",
          .target = &command.request.strict,
-         .help = "channels must match by name and type, and files have one part"},
+         .help = "OpenEXR files of one part, whose channels match by name and type (numbers, half or float, "
+                 "or ids)"},
         {.names = "--mask-object",
          .target = &command.mask,
          .help = "only pixels whose optic.object is this id",

@@ -41,7 +41,7 @@ UnwrapPhoto photo_from(const std::string& text, std::size_t index, const UnwrapO
                                      index + 1, scene.cameras.size()));
     console.files().reads({file});
     UnwrapPhoto photo = read_photo(file);
-    if (!photo.picture->alpha.empty())
+    if (!photo.picture->alpha.empty() && !photo.picture->is_premultiplied)
         console.warn(file + ": its alpha is not looked at; --mask says where a photograph is not to be used");
     photo.camera = camera;
     if (index < options.masks.size()) {

@@ -146,7 +146,7 @@ std::array<const Channel*, 3> colour_channels(const Image& image) {
     return {&all[0], &all[0], &all[0]};
 }
 
-/// The display window of an OpenEXR file's first part; black where there is no data.
+/// The display window of an OpenEXR file's first part; black, and of no opacity, where there is no data.
 std::shared_ptr<const Texture> exr_texture(ExrFile& in, const std::string& name) {
     if (in.is_deep(0)) throw InputError(name, "", "is no flat picture");
     const ExrWindows shape = in.windows(0);
@@ -164,18 +164,26 @@ std::shared_ptr<const Texture> exr_texture(ExrFile& in, const std::string& name)
     const int dx = shape.data_x - shape.display_x, dy = shape.data_y - shape.display_y;
     const int first_x = std::max(0, dx), last_x = std::min(shape.display_width, dx + shape.data_width);
     const int first_y = std::max(0, dy), last_y = std::min(shape.display_height, dy + shape.data_height);
-    std::size_t c = 0;
-    for (const Channel* channel : colour_channels(image)) {
-        const std::vector<float> values = as_floats(*channel);
+    const auto copy = [&](const Channel& channel, std::vector<float>& into, std::size_t stride,
+                          std::size_t c) {
+        const std::vector<float> values = as_floats(channel);
         for (int y = first_y; y < last_y; ++y)
             for (int x = first_x; x < last_x; ++x) {
                 const std::size_t from =
                     static_cast<std::size_t>(y - dy) * static_cast<std::size_t>(shape.data_width) +
                     static_cast<std::size_t>(x - dx);
-                texture->rgb[3 * (static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)) + c] =
+                into[stride * (static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)) + c] =
                     values[from];
             }
-        ++c;
+    };
+    std::size_t c = 0;
+    for (const Channel* channel : colour_channels(image)) copy(*channel, texture->rgb, 3, c++);
+    if (const Channel* alpha = image.find("A")) {
+        texture->alpha.resize(texture->rgb.size() / 3);
+        copy(*alpha, texture->alpha, 1, 0);
+        for (float& value : texture->alpha) value = std::clamp(value, 0.0F, 1.0F);
+        texture->is_premultiplied = true;
+        texture->drop_opaque_alpha();
     }
     return texture;
 }

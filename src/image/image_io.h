@@ -63,9 +63,10 @@ std::vector<std::pair<std::string, Image>> read_exr_parts(const std::string& fil
 bool is_exr_file(const std::string& file);
 
 /// Reads any picture that OpenImageIO knows as linear Rec.709: 8 and 16 bit integer files are taken as sRGB
-/// unless they say that they are linear, all others as linear. One or two channels become grey; alpha is
-/// dropped, colours stay as the file has them. Of a file with layers the root R G B are taken; of a data
-/// window that is not the display window the display window, black where there is no data. Throws InputError.
+/// unless they say that they are linear, all others as linear. One or two channels become grey; alpha
+/// stands beside colours, which stay as the file has them: is_premultiplied says how that is. Of a file with
+/// layers the root R G B are taken; of a data window that is not the display window the display window, black
+/// where there is no data. Throws InputError.
 std::shared_ptr<const Texture> read_texture(const std::string& file);
 
 /// The same for a PNG, JPEG, WebP, OpenEXR or Radiance file held in memory. `name`: for messages.

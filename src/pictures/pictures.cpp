@@ -61,7 +61,9 @@ std::array<int, 3> colour_channels(const OIIO::ImageSpec& spec) {
     return {0, 0, 0};
 }
 
-std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std::vector<float>& values) {
+/// `is_tiff`: whose colours may be stored multiplied by alpha, and are divided by it; others' are straight.
+std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std::vector<float>& values,
+                                          bool is_tiff) {
     auto texture = std::make_shared<Texture>();
     texture->width = spec.full_width;
     texture->height = spec.full_height;
@@ -71,6 +73,8 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
     const bool srgb = is_srgb(spec);
     // Opacity beside colours; what lies outside the data has none.
     const auto of_pixel = static_cast<std::size_t>(std::max(0, spec.alpha_channel));
+    const bool is_multiplied =
+        is_tiff && spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     if (spec.alpha_channel >= 0)
         texture->alpha.assign(
             static_cast<std::size_t>(spec.full_width) * static_cast<std::size_t>(spec.full_height), 0);
@@ -85,13 +89,13 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
                                      static_cast<std::size_t>(x - dx);
             const std::size_t to = static_cast<std::size_t>(y) * static_cast<std::size_t>(spec.full_width) +
                                    static_cast<std::size_t>(x);
+            const float* const stored = &values[from * static_cast<std::size_t>(spec.nchannels)];
+            const float over = is_multiplied && stored[of_pixel] > 0 ? stored[of_pixel] : 1;
             for (std::size_t c = 0; c < 3; ++c) {
-                const float value = values[from * static_cast<std::size_t>(spec.nchannels) +
-                                           static_cast<std::size_t>(channels[c])];
-                texture->rgb[to * 3 + c] = srgb ? linear_from_stored(value) : value;
+                const float value = stored[static_cast<std::size_t>(channels[c])] / over;
+                texture->rgb[to * 3 + c] = srgb ? linear_from_stored(std::min(value, 1.0F)) : value;
             }
-            if (!texture->alpha.empty())
-                texture->alpha[to] = values[from * static_cast<std::size_t>(spec.nchannels) + of_pixel];
+            if (!texture->alpha.empty()) texture->alpha[to] = stored[of_pixel];
         }
     }
     texture->drop_opaque_alpha();
@@ -126,7 +130,7 @@ std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string
             throw InputError(name, "", "is truncated or damaged: " + library_reason(in.geterror()));
         for (const float value : values)
             if (!std::isfinite(value)) throw InputError(name, "", "holds a value that is not finite");
-        return texture_of(spec, values);
+        return texture_of(spec, values, in.format_name() == std::string_view("tiff"));
     } catch (const std::bad_alloc&) {
         throw InputError(name, "", "needs more memory than there is");
     }

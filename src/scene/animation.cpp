@@ -182,7 +182,7 @@ std::string frame_file(const std::string& output, int frame) {
     const std::size_t first = output.find('#');
     if (first == std::string::npos)
         throw UsageError("the output \"" + output +
-                         "\" of several frames needs a place for their numbers: f.####.exr");
+                         "\" of frames needs a place for their numbers: f.####.exr");
     std::size_t end = first;
     while (end < output.size() && output[end] == '#') ++end;
     if (output.find('#', end) != std::string::npos)

@@ -163,6 +163,26 @@ TEST_CASE("pictures of every kind become linear", "[image]") {
                  "--attrib oiio:UnassociatedAlpha 1 -o alpha.png");
         check_constant(*read_texture(folder + "/alpha.png"), linear, 1e-6);
     }
+    SECTION("alpha stands beside colours, of OpenEXR multiplied by it, of TIFF straight whichever it was") {
+        const std::string pattern = "--pattern constant:color=0.2,0.3,0.05,0.5 9x9 4 -d float ";
+        oiiotool(folder, pattern + "-o alpha.exr");
+        const auto exr = read_texture(folder + "/alpha.exr");
+        check_constant(*exr, {0.2, 0.3, 0.05}, 1e-6);
+        CHECK(exr->alpha == std::vector<float>(81, 0.5F));
+        CHECK(exr->is_premultiplied);
+        CHECK(decode_texture(file_bytes(folder + "/alpha.exr"), "exr")->is_premultiplied);
+        oiiotool(folder, pattern + "-o associated.tif");
+        oiiotool(folder, pattern + "--attrib oiio:UnassociatedAlpha 1 -o straight.tif");
+        const auto tiff_of = [&](const std::string& name, const std::array<double, 3>& colours) {
+            const auto tiff = read_texture(folder + "/" + name);
+            INFO(name);
+            check_constant(*tiff, colours, 1e-6);
+            CHECK(!tiff->is_premultiplied);
+            CHECK(tiff->alpha == std::vector<float>(81, 0.5F));
+        };
+        tiff_of("associated.tif", {0.4, 0.6, 0.1});
+        tiff_of("straight.tif", {0.2, 0.3, 0.05});
+    }
     SECTION("a data window is placed in its display window") {
         oiiotool(folder,
                  "--pattern constant:color=1,1,1 4x3 3 --origin +2+1 --fullsize 8x6+0+0 -o window.exr");

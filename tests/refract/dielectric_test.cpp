@@ -78,6 +78,8 @@ TEST_CASE("total internal reflection begins at the critical angle", "[refract]")
 
 TEST_CASE("normals turned past grazing count as grazing; rays without direction refract to nothing",
           "[refract]") {
+    CHECK(!refracted({0, 0, -2}, {0, 0, -1}, 1.5));  // no way lies in between
+    CHECK(!refracted({0, 0, -2}, {0, 0, -1}, 1 / 1.5));
     const auto grazing = refracted({1, 0, 0}, kUp, 1 / 1.5);
     const auto beyond = refracted(normalize(Vec3(1, 1e-6, 0)), kUp, 1 / 1.5);
     REQUIRE(grazing.has_value());

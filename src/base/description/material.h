@@ -21,6 +21,7 @@ struct Texture {
     int width = 0, height = 0;
     std::vector<float> rgb;
     std::vector<float> alpha;  // 0..1, one per texel; empty: all opaque
+    bool is_premultiplied = false;  // colours are multiplied by alpha, as OpenEXR has them; else straight
 
     /// Where all is opaque there is no alpha, as in files that have none.
     void drop_opaque_alpha() {

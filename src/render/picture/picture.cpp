@@ -42,7 +42,7 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
         else if (statistics.optic_pixels == 0)
             warn("no pixel sees an optic: they are off screen, behind the camera, or hidden");
         const Scene& scene = world.scene;
-        if (world.objects.size() == 0 && scene.volumes.empty() && scene.points.empty() &&
+        if (world.objects.size() == 0 && !world.blended && scene.volumes.empty() && scene.points.empty() &&
             scene.labels.empty())
             warn("the scene has no objects: rays see only the background");
     }

@@ -135,12 +135,15 @@ void check_track(const Node& root, const Node& track) {
 
 void check_animation(const Node& root) {
     const Node tracks = root["animation"]["tracks"];
-    std::set<std::string> targets;
+    std::set<std::string> targets;  // of the tracks before
     for (std::size_t i = 0; i < tracks.size(); ++i) {
         const Node target = tracks[i]["target"];
         check_track(root, tracks[i]);
-        if (!targets.insert(target.json.get<std::string>()).second)
-            target.fail("is animated by an earlier track already");
+        const std::string pointer = target.json.get<std::string>();
+        const auto inside = targets.lower_bound(pointer + "/");
+        if (inside != targets.end() && inside->starts_with(pointer + "/"))
+            target.fail("holds " + *inside + ", which an earlier track animates and this one would undo");
+        if (!targets.insert(pointer).second) target.fail("is animated by an earlier track already");
     }
 }
 

@@ -11,8 +11,8 @@ namespace {
 void add(const std::shared_ptr<const Texture>& texture, Digest& digest) {
     digest.add(texture != nullptr);
     if (!texture) return;
-    const auto& [width, height, rgb, alpha] = *texture;
-    digest.add_all(width, height, rgb, alpha);
+    const auto& [width, height, rgb, alpha, is_premultiplied] = *texture;
+    digest.add_all(width, height, rgb, alpha, is_premultiplied);
 }
 
 void add(const PerspectiveCamera& camera, Digest& digest) {

@@ -276,7 +276,8 @@ Material read_material(const Node& node, Reading& reading) {
     if (material.name == "inherit")
         node["name"].fail("'inherit' is taken: it stands for a file's own materials");
     const PlacedTexture base = read_texture(node, "baseColorTexture", reading);
-    material.base_color_texture = base.picture;
+    const bool is_shared_out = material.alpha_mode != AlphaMode::kOpaque && base.picture;
+    material.base_color_texture = is_shared_out ? with_straight_colours(base.picture) : base.picture;
     material.base_color_sampler = base.sampler;
     material.emissive_texture = read_texture(node, "emissiveTexture", reading);
     material.metallic_roughness_texture = read_number_texture(node, "metallicRoughnessTexture", reading);

@@ -245,6 +245,16 @@ std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const 
     return normals;
 }
 
+std::shared_ptr<const Texture> with_straight_colours(std::shared_ptr<const Texture> picture) {
+    if (!picture->is_premultiplied) return picture;
+    auto straight = std::make_shared<Texture>(*picture);
+    straight->is_premultiplied = false;
+    for (std::size_t i = 0; i < straight->alpha.size(); ++i)
+        if (straight->alpha[i] > 0)
+            for (std::size_t c = 0; c < 3; ++c) straight->rgb[3 * i + c] /= straight->alpha[i];
+    return straight;
+}
+
 PlacedTexture read_texture(const Node& material, const char* key, Reading& reading) {
     return read_key(material, key, Meaning::kColours, reading);
 }

@@ -107,6 +107,8 @@ RenderSettings read_render(const Node& scene);
 Material read_material(const Node& material, Reading& reading);
 /// A texture of a material: `key` of it, colours linear; none where it has no such key.
 PlacedTexture read_texture(const Node& material, const char* key, Reading& reading);
+/// The picture itself where its colours are straight, else divided by alpha where there is any.
+std::shared_ptr<const Texture> with_straight_colours(std::shared_ptr<const Texture> picture);
 /// The same of a picture of numbers: as the file holds them.
 PlacedTexture read_number_texture(const Node& material, const char* key, Reading& reading);
 /// The picture of a file of numbers, as the file holds them. Throws InputError(path) as read_picture.
