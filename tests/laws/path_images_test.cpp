@@ -58,6 +58,17 @@ Vec3 world_axis(int k) {
     return axis;
 }
 
+/// The exact ray of a film place over the optics of an explained end; none where it does not go that way.
+std::optional<ShotRay> shot_along(const Renderer& renderer, const PixelEnd& end, const Vec2& place) {
+    std::string word;
+    for (const Step& step : end.steps)
+        if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
+    ShootRequest along;
+    along.path = EventWord(word);
+    const ShotRay shot = renderer.shoot(std::span(&place, 1), along).rays[0];
+    return shot.followed() ? std::optional(shot) : std::nullopt;
+}
+
 }  // namespace
 
 TEST_CASE("a point that the truth shows over whole paths is projected to the pixel that shows it",
@@ -201,15 +212,9 @@ TEST_CASE("an explained pixel's paths weigh what shot rays of their words do", "
         for (int x = 20; x < film.width; x += 40)
             for (const PixelEnd& end : renderer.explain(truth, x, y).ends) {
                 if (!end.principal) continue;
-                std::string word;
-                for (const Step& step : end.steps)
-                    if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
-                ShootRequest along;
-                along.path = EventWord(word);
-                const Vec2 middle(x + 0.5, y + 0.5);
-                const ShotRays shot = renderer.shoot(std::span(&middle, 1), along);
-                if (!shot.rays[0].followed()) continue;
-                for (int c = 0; c < 3; ++c) CHECK(std::fabs(end.weight[c] - shot.rays[0].weight[c]) <= 1e-9);
+                const std::optional<ShotRay> shot = shot_along(renderer, end, Vec2(x + 0.5, y + 0.5));
+                if (!shot) continue;
+                for (int c = 0; c < 3; ++c) CHECK(std::fabs(end.weight[c] - shot->weight[c]) <= 1e-9);
                 ++compared;
                 tinted += end.weight.x < 0.9;
             }
@@ -235,20 +240,14 @@ TEST_CASE("an explained pixel says which paths maxDepth ends, and that the truth
                     if (engine == Engine::kLimitTruth && pixel.optic != kNone) CHECK(pixel.traced);
                     for (const PixelEnd& end : pixel.ends) {
                         if (!end.principal) continue;
-                        std::string word;
-                        for (const Step& step : end.steps)
-                            if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
-                        ShootRequest along;
-                        along.path = EventWord(word);
-                        const Vec2 middle(x + 0.5, y + 0.5);
-                        const ShotRay shot = renderer.shoot(std::span(&middle, 1), along).rays[0];
-                        if (!shot.followed()) continue;
+                        const std::optional<ShotRay> shot = shot_along(renderer, end, Vec2(x + 0.5, y + 0.5));
+                        if (!shot) continue;
                         if (engine == Engine::kExact) {
-                            ++by_facets, agree += end.cut == shot.cut;
+                            ++by_facets, agree += end.cut == shot->cut;
                             continue;
                         }
-                        CHECK(end.cut == shot.cut);
-                        ++(shot.cut ? cut : whole);
+                        CHECK(end.cut == shot->cut);
+                        ++(shot->cut ? cut : whole);
                     }
                 }
         CHECK(cut > 3);

@@ -157,10 +157,10 @@ Vec3 PointProjector::within_reach(const ProjectedPoint& point) const {
 /// The image of a point that continues one of a point near its way.
 std::optional<ChainImage> PointProjector::moved_image(const WorldImage& image,
                                                       const ProjectedPoint& point) const {
-    const bool is_of_chain = chain_eye(camera_) && std::ranges::all_of(image.steps, [&](const Step& step) {
-                                 return has_own_normals(world_.scene.meshes[world_.optics[step.optic].mesh]);
-                             });
-    if (is_of_chain || point.is_direction || !chain_eye(camera_))
+    const bool have_own_normals = std::ranges::all_of(image.steps, [&](const Step& step) {
+        return has_own_normals(world_.scene.meshes[world_.optics[step.optic].mesh]);
+    });
+    if (have_own_normals || point.is_direction || !chain_eye(camera_))
         return solve_any_image(world_, frame_, {image.events, image.pixel}, point);
     if (!image.refined) return std::nullopt;
     const auto exact =
