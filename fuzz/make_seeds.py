@@ -304,8 +304,11 @@ def random_bytes():
         write("laws", f"random{seed:02}", random.Random(seed).randbytes(160))
         if seed not in (4, 10):  # whose lights take many seconds
             write("caustics", f"random{seed:02}", random.Random(100 + seed).randbytes(160))
+        write("maps", f"random{seed:02}", random.Random(400 + seed).randbytes(160))
         write("radiosity", f"random{seed:02}", random.Random(300 + seed).randbytes(160))
         write("terrain", f"random{seed:02}", random.Random(200 + seed).randbytes(400))
+    for seed in (3, 11, 12, 13, 17, 19, 21, 22):  # that see enough of their objects
+        write("fit", f"random{seed:02}", random.Random(500 + seed).randbytes(200))
 
 
 for make in (scenes, tables, lenses, volumes, models, pictures, studies, random_bytes):

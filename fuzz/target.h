@@ -76,6 +76,8 @@ Answer test_file(std::string_view bytes);
 Answer run_folder(std::string_view bytes);
 Answer random_scene(std::string_view bytes);
 Answer random_caustics(std::string_view bytes);
+Answer random_fit(std::string_view bytes);
+Answer random_maps(std::string_view bytes);
 Answer random_terrain(std::string_view bytes);
 Answer random_radiosity(std::string_view bytes);
 Answer sweep_report(std::string_view bytes);

@@ -1,0 +1,136 @@
+// Fuzz target of calibration: pairs of pixels and points that exact rays of a random scene make; a fit that
+// begins at the truth stays there, one that begins beside it comes no farther from its pairs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/util/parallel.h"
+#include "fuzz/grammar.h"
+#include "fuzz/random_scene.h"
+#include "fuzz/target.h"
+#include "trilens/fit.h"
+#include "trilens/render.h"
+#include "trilens/scene.h"
+
+using namespace trilens;
+
+namespace trilens_fuzz {
+namespace {
+
+constexpr std::size_t kMostPairs = 24;
+constexpr double kPixels = 1e-3;  // that exact pairs may be off
+
+/// What rays through the middles of pixels see, directly or over one or two optics.
+std::vector<Correspondence> exact_pairs(const Renderer& renderer, const Scene& scene) {
+    std::vector<Vec2> places;
+    for (int y = 0; y < scene.film.height; y += 2)
+        for (int x = 0; x < scene.film.width; x += 2) places.push_back({x + 0.5, y + 0.5});
+    const ShotRays shot = renderer.shoot(places);
+    std::vector<Correspondence> pairs;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const ShotRay& ray = shot.rays[i];
+        const double share = std::max({ray.weight.x, ray.weight.y, ray.weight.z});
+        if (ray.state != ShotState::kSeen || ray.cut || share < 1e-3) continue;
+        Correspondence pair;
+        pair.pixel = places[i];
+        pair.point = ray.position;
+        for (const PathEvent& event : shot.events_of(ray))
+            if (event.event != Event::kPass) pair.path += event.event == Event::kReflect ? 'R' : 'T';
+        if (pair.path.size() > 2 || pair.path.size() != ray.event_count) continue;
+        if (pair.path.empty()) pair.path = "D";
+        pairs.push_back(pair);
+    }
+    // Evenly over the film.
+    std::vector<Correspondence> some;
+    const std::size_t count = std::min(kMostPairs, pairs.size());
+    for (std::size_t k = 0; k < count; ++k) some.push_back(pairs[k * pairs.size() / count]);
+    return some;
+}
+
+/// Numbers of the first optic, or of the camera, and by how much a fit begins beside them, relative.
+struct Unknown {
+    std::vector<std::string> pointers;
+    double beside = 0;
+};
+
+Unknown unknown_of(Choices& choose, const Scene& scene) {
+    Unknown unknown;
+    unknown.beside = choose.of(std::array{0.0, 1e-4, 1e-2});
+    const std::string& json = scene.resolved;
+    const bool has_eye = json.find("\"lookAt\"") != std::string::npos;
+    const bool has_place = json.find("\"primitive\"") != std::string::npos;
+    switch (choose.below(4)) {
+        case 0:
+            if (has_place) unknown.pointers.push_back("/meshes/0/primitive/center");
+            break;
+        case 1:
+            if (has_eye) unknown.pointers.push_back("/cameras/0/lookAt/eye");
+            break;
+        case 2:
+            unknown.pointers = {"/meshes/0/primitive/center", "/meshes/0/primitive/radius"};
+            break;
+        default:
+            unknown.pointers = {"/cameras/0/yfov"};
+    }
+    return unknown;
+}
+
+bool may_be_nan(const FittedPair& pair) {
+    return pair.state == PairState::kLost;
+}
+
+void require_numbers(const FitResult& fit, std::size_t pairs) {
+    require(std::isfinite(fit.rms) && std::isfinite(fit.rms_start) && std::isfinite(fit.noise),
+            "a fit whose residual is no number");
+    require(fit.pairs.size() == pairs && fit.used + fit.lost + fit.outliers == pairs,
+            "a fit that has lost count of its pairs");
+    for (const FittedParameter& one : fit.parameters)
+        require(std::isfinite(one.value) && std::isfinite(one.sigma) && one.sigma >= 0,
+                "a fitted number that is none: " + one.pointer);
+    for (const FittedPair& pair : fit.pairs)
+        require(may_be_nan(pair) || std::isfinite(length(pair.residual)), "a residual that is no number");
+}
+
+void require_fit(const std::string& json, Choices& choose) {
+    const Scene scene = parse_scene(json);
+    const Renderer renderer(scene);
+    const std::vector<Correspondence> pairs = exact_pairs(renderer, scene);
+    FitRequest request;
+    const Unknown unknown = unknown_of(choose, scene);
+    request.free = unknown.pointers;
+    if (choose.chance(64)) request.match = FitMatch::kNearest;
+    const FitResult truth = fit_scene(scene, pairs, request);
+    require_numbers(truth, pairs.size());
+    require(truth.rms_start <= kPixels,
+            fmt::format("exact pairs are {} pixels off where the fit begins", truth.rms_start));
+    require(truth.rms <= kPixels, fmt::format("a fit leaves the truth, for {} pixels", truth.rms));
+
+    const int before = thread_count();
+    set_thread_count(before == 1 ? 3 : 1);
+    const std::string again = fit_scene(scene, pairs, request).document;
+    set_thread_count(before);
+    require(again == truth.document, "a fit depends on the number of threads");
+
+    if (unknown.beside == 0) return;
+    SceneRequest moved;
+    moved.file = put_file("fit.json", json);
+    for (const FittedParameter& one : truth.parameters)
+        moved.overrides.push_back(
+            {one.pointer, fmt::format("{}", one.start * (1 + unknown.beside * choose.between(-1, 1)))});
+    const FitResult fit = fit_scene(load_scene(moved), pairs, request);
+    require_numbers(fit, pairs.size());
+    require(
+        fit.rms <= fit.rms_start * (1 + 1e-6) + kPixels || !fit.warnings.empty(),
+        fmt::format("a fit comes farther from its pairs and says nothing: {} to {}", fit.rms_start, fit.rms));
+}
+
+}  // namespace
+
+Answer random_fit(std::string_view bytes) {
+    Choices choose(bytes.substr(0, std::min<std::size_t>(bytes.size(), 12)));
+    const RandomScene random = make_random_scene(bytes.substr(std::min<std::size_t>(bytes.size(), 12)));
+    return answer([&] { require_fit(random.json, choose); });
+}
+
+}  // namespace trilens_fuzz

@@ -1,0 +1,272 @@
+// Fuzz target of maps: random scenes whose films are mapped onto panoramas and objects, and back; every place
+// of a map is followed along its own ray, and what rays show of a target is in its map.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "base/util/parallel.h"
+#include "fuzz/random_scene.h"
+#include "fuzz/target.h"
+#include "inverse/maps/target.h"
+#include "trilens/image.h"
+#include "trilens/maps.h"
+#include "trilens/render.h"
+#include "trilens/scene.h"
+
+using namespace trilens;
+
+namespace trilens_fuzz {
+namespace {
+
+constexpr int kDepth = 1;  // of paths: meetings with optics after the first
+constexpr std::array kWords{"R", "T", "RR", "RT", "TR", "TT"};
+
+constexpr int kMostOptics = 2;  // the search for paths over more takes seconds
+
+/// A target's pixel, its middle.
+Vec2 middle_of(int x, int y) {
+    return {x + 0.5, y + 0.5};
+}
+
+std::size_t index_of(int x, int y, int width) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+/// What a target is made of, and where rays show it.
+struct Mapped {
+    const Renderer& renderer;
+    const Scene& scene;
+    TargetRequest request;
+    Target target;
+
+    Mapped(const Renderer& drawn, const Scene& of, const TargetDescription& description)
+        : renderer(drawn), scene(of), target(description, of) {
+        request.target = description;
+        request.proxy.kind = ProxyKind::kInfinity;
+    }
+
+    /// What a followed ray shows of the target: a unit direction, or a point; none where it shows another
+    /// thing.
+    std::optional<Vec3> shown(const ShotRay& ray) const {
+        if (!ray.followed()) return std::nullopt;
+        if (target.has_directions()) return ray.direction;
+        if (ray.state != ShotState::kSeen || ray.object != request.target.object) return std::nullopt;
+        return ray.position;
+    }
+    /// Whether no optic hides what it shows; objects hide no direction.
+    bool is_free(const ShotRay& ray) const {
+        return !ray.cut && (!target.has_directions() || ray.state == ShotState::kEscapes);
+    }
+    std::optional<Vec2> pixel(const ShotRay& ray) const {
+        const std::optional<Vec3> what = shown(ray);
+        if (!what) return std::nullopt;
+        return target.has_directions() ? target.pixel_of_direction(*what)
+                                       : target.pixel_of_point(*what, ray.primitive);
+    }
+};
+
+/// Pixels of the film about a place of an unwrapped map among which what it says must be shown.
+constexpr double kNear = 0.1;
+
+/// The rays about each place that a map has show what it says on all sides of it: of some word of events,
+/// unless what one shows ends so near.
+void require_places(const Mapped& mapped, const FilmMap& map) {
+    std::vector<Vec2> places;
+    std::vector<Vec3> wanted;
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const std::size_t at = index_of(x, y, map.width);
+            if (!map.valid[at]) continue;
+            const Vec2 p(map.x[at], map.y[at]);
+            for (const Vec2& off :
+                 {Vec2(0), Vec2(kNear, 0), Vec2(-kNear, 0), Vec2(0, kNear), Vec2(0, -kNear)})
+                places.push_back(p + off);
+            const std::optional<TargetPlace> place = mapped.target.place(middle_of(x, y));
+            require(place.has_value(), "a map has a pixel that is none of its target's");
+            wanted.push_back(place->at);
+        }
+    std::vector<bool> is_right(wanted.size()), is_told(wanted.size());
+    for (const char* word : kWords) {
+        ShootRequest shoot;
+        shoot.path = EventWord(word);
+        const ShotRays shot = mapped.renderer.shoot(places, shoot);
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            const std::optional<Vec3> middle = mapped.shown(shot.rays[5 * i]);
+            if (!middle) continue;
+            double reach = 0;
+            bool is_whole = true;
+            for (std::size_t k = 1; k < 5; ++k) {
+                const std::optional<Vec3> side = mapped.shown(shot.rays[5 * i + k]);
+                is_whole = is_whole && side;
+                if (side) reach = std::max(reach, length(*side - *middle));
+            }
+            is_told[i] = true;
+            is_right[i] = is_right[i] || !is_whole || length(wanted[i] - *middle) <= reach;
+        }
+    }
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        require(is_right[i] || !is_told[i],
+                fmt::format("an unwrapped map is astray: at {},{} the film does not show {},{},{}",
+                            places[5 * i].x, places[5 * i].y, wanted[i].x, wanted[i].y, wanted[i].z));
+}
+
+/// A view has the pixels whose rays show the target, at the places where these end.
+void require_view(const Mapped& mapped, const FilmMap& view, const ShotRays& shot) {
+    for (std::size_t i = 0; i < view.valid.size(); ++i) {
+        const bool shows = mapped.pixel(shot.rays[i]).has_value() && shot.rays[i].event_count > 0;
+        require(shows == (view.valid[i] != 0),
+                fmt::format("a view {} pixel {}, whose ray shows {}", view.valid[i] ? "has" : "lacks", i,
+                            shows ? "the target" : "another thing"));
+        if (!shows) continue;
+        const Vec2 place = *mapped.pixel(shot.rays[i]);
+        require(length(place - Vec2(view.x[i], view.y[i])) <= 1e-5 * (1 + length(place)),
+                fmt::format("a view has pixel {} at {},{}, where its ray shows {},{}", i, view.x[i],
+                            view.y[i], place.x, place.y));
+    }
+}
+
+/// What one mirror reflects, or one body of glass refracts twice: the ways that an unwrapped map has.
+bool is_usual(std::span<const PathEvent> events) {
+    if (events.size() == 1) return events[0].event == Event::kReflect;
+    return events.size() == 2 && events[0].event == Event::kTransmit && events[1].event == Event::kTransmit &&
+           events[0].optic == events[1].optic;
+}
+
+bool is_same_way(std::span<const PathEvent> a, std::span<const PathEvent> b) {
+    return std::ranges::equal(a, b, [](const PathEvent& one, const PathEvent& other) {
+        return one.optic == other.optic && one.event == other.event && one.front == other.front;
+    });
+}
+
+/// Where a target's pixel lies in a cell of four corners, along its sides; none outside, and in cells that
+/// are turned over.
+std::optional<Vec2> place_in_cell(const std::array<Vec2, 4>& corners, const Vec2& pixel) {
+    const Vec2 u = corners[1] - corners[0], v = corners[2] - corners[0], w = pixel - corners[0];
+    const double area = u.x * v.y - u.y * v.x;
+    if (std::fabs(area) < 1e-3) return std::nullopt;
+    const Vec2 at((w.x * v.y - w.y * v.x) / area, (u.x * w.y - u.y * w.x) / area);
+    if (at.x < 0.1 || at.y < 0.1 || at.x + at.y > 0.9) return std::nullopt;
+    return at;
+}
+
+/// What rays show of the target, in the same way all about, is in its map.
+void require_complete(const Mapped& mapped, const FilmMap& map, const ShotRays& shot) {
+    const Film& film = mapped.scene.film;
+    for (int y = 0; y + 1 < film.height; ++y)
+        for (int x = 0; x + 1 < film.width; ++x) {
+            std::array<Vec2, 4> corners;
+            bool is_one = true;
+            const auto events = shot.events_of(shot.rays[index_of(x, y, film.width)]);
+            for (int k = 0; k < 4 && is_one; ++k) {
+                const ShotRay& ray = shot.rays[index_of(x + k % 2, y + k / 2, film.width)];
+                const std::optional<Vec2> at = mapped.pixel(ray);
+                is_one = at && mapped.is_free(ray) && is_usual(events) &&
+                         is_same_way(events, shot.events_of(ray)) &&
+                         std::max({ray.weight.x, ray.weight.y, ray.weight.z}) > 1e-3;
+                if (is_one) corners[static_cast<std::size_t>(k)] = *at;
+            }
+            if (!is_one) continue;
+            const auto [low, high] = std::ranges::minmax(corners, {}, &Vec2::x);
+            if (high.x - low.x > 4) continue;  // a seam, or a fold
+            for (int py = static_cast<int>(corners[0].y) - 4; py < corners[0].y + 4; ++py)
+                for (int px = static_cast<int>(corners[0].x) - 4; px < corners[0].x + 4; ++px) {
+                    if (px < 0 || py < 0 || px >= map.width || py >= map.height) continue;
+                    const std::optional<Vec2> at = place_in_cell(corners, middle_of(px, py));
+                    if (!at || map.valid[index_of(px, py, map.width)]) continue;
+                    const ShotRays there = mapped.renderer.shoot(std::vector<Vec2>{middle_of(x, y) + *at});
+                    const std::optional<Vec2> shown = mapped.pixel(there.rays[0]);
+                    require(!shown || !is_same_way(events, there.events_of(there.rays[0])) ||
+                                length(*shown - middle_of(px, py)) > 0.1,
+                            fmt::format("an unwrapped map lacks {},{}, which the film shows at {},{}", px, py,
+                                        x + 0.5 + at->x, y + 0.5 + at->y));
+                }
+        }
+}
+
+/// A photograph that is white everywhere unwraps to white, wherever it is seen.
+void require_white(const Mapped& mapped, const FilmMap& map) {
+    const Film& film = mapped.scene.film;
+    Image white;
+    white.width = white.data_width = film.width;
+    white.height = white.data_height = film.height;
+    for (const char* name : {"R", "G", "B"})
+        white.channels.push_back(
+            {name, std::vector<float>(static_cast<std::size_t>(film.width * film.height), 1)});
+    UnwrapRequest request;
+    static_cast<TargetRequest&>(request) = mapped.request;
+    request.divide_weight = false;
+    const Image made = unwrap(mapped.renderer, request, {photo_of(white, "white")}).image;
+    const std::vector<float>& seen = made.find("A")->floats();
+    for (const char* name : {"R", "G", "B"}) {
+        const std::vector<float>& colour = made.find(name)->floats();
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            require(std::fabs(colour[i] - (seen[i] > 0 ? 1 : 0)) <= 1e-5,
+                    fmt::format("a white photograph unwraps to {} at {}, seen {}", colour[i], i, seen[i]));
+    }
+    require(std::ranges::equal(seen, map.valid, [](float a, unsigned char b) { return (a > 0) == (b != 0); }),
+            "what is unwrapped and its map differ in what is seen");
+}
+
+void require_laws(const Mapped& mapped) {
+    std::vector<Vec2> middles;
+    const Film& film = mapped.scene.film;
+    for (int y = 0; y < film.height; ++y)
+        for (int x = 0; x < film.width; ++x) middles.push_back(middle_of(x, y));
+    const ShotRays shot = mapped.renderer.shoot(middles);
+    FilmMapRequest request;
+    static_cast<TargetRequest&>(request) = mapped.request;
+    request.way = MapWay::kView;
+    answer([&] { require_view(mapped, make_map(mapped.renderer, request), shot); });
+    request.way = MapWay::kUnwrap;
+    FilmMap map;
+    if (answer([&] { map = make_map(mapped.renderer, request); }) == Answer::kRefused) {
+        map.width = request.target.width, map.height = request.target.height;
+        map.valid.assign(static_cast<std::size_t>(map.width * map.height), 0);
+    } else {
+        require_places(mapped, map);
+        require_white(mapped, map);
+    }
+    require_complete(mapped, map, shot);
+    const int before = thread_count();
+    set_thread_count(before == 1 ? 3 : 1);
+    FilmMap again;
+    answer([&] { again = make_map(mapped.renderer, request); });
+    set_thread_count(before);
+    require(again.valid.empty() || (again.x == map.x && again.y == map.y),
+            "a map depends on the number of threads");
+}
+
+}  // namespace
+
+Answer random_maps(std::string_view bytes) {
+    const RandomScene random = make_random_scene(bytes);
+    return answer([&] {
+        try {
+            Scene scene = parse_scene(random.json);
+            scene.render.max_depth = kDepth;
+            int optics = 0;
+            std::erase_if(scene.meshes, [&](const Mesh& mesh) {
+                return mesh.role == Role::kOptic && ++optics > kMostOptics;
+            });
+            for (Mesh& mesh : scene.meshes) mesh.resolution = std::min(mesh.resolution, 8);
+            const Renderer renderer(scene);
+            TargetDescription sky;
+            sky.width = 16, sky.height = 8;
+            require_laws(Mapped(renderer, scene, sky));
+            const auto object = std::ranges::find(scene.meshes, Role::kObject, &Mesh::role);
+            TargetDescription surface;
+            surface.kind = TargetKind::kObject;
+            surface.object = static_cast<Id>(object - scene.meshes.begin());
+            surface.width = surface.height = 12;
+            // Objects without a map of their surface are refused.
+            answer([&] { require_laws(Mapped(renderer, scene, surface)); });
+        } catch (const ComputationError& error) {  // a legal scene has maps
+            throw Defect(std::string("a scene that was read is not mapped: ") + error.what());
+        }
+    });
+}
+
+}  // namespace trilens_fuzz
