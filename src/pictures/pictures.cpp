@@ -61,6 +61,49 @@ std::array<int, 3> colour_channels(const OIIO::ImageSpec& spec) {
     return {0, 0, 0};
 }
 
+/// Where a stored pixel stands once the picture is turned upright, by Exif's tag Orientation (TIFF 6.0,
+/// section 8): the sides that the stored top row and left column belong to.
+std::array<int, 2> upright_place(int orientation, std::array<int, 2> at, std::array<int, 2> size) {
+    const std::array<int, 2> from_end{size[0] - 1 - at[0], size[1] - 1 - at[1]};
+    switch (orientation) {
+        case 2:
+            return {from_end[0], at[1]};
+        case 3:
+            return from_end;
+        case 4:
+            return {at[0], from_end[1]};
+        case 5:
+            return {at[1], at[0]};
+        case 6:
+            return {from_end[1], at[0]};
+        case 7:
+            return {from_end[1], from_end[0]};
+        case 8:
+            return {at[1], from_end[0]};
+        default:
+            return at;
+    }
+}
+
+/// As viewers show it.
+void turn_upright(Texture& texture, int orientation) {
+    if (orientation < 2 || orientation > 8) return;
+    const std::array<int, 2> size{texture.width, texture.height};
+    if (orientation >= 5) std::swap(texture.width, texture.height);
+    std::vector<float> rgb(texture.rgb.size()), alpha(texture.alpha.size());
+    std::size_t from = 0;
+    for (int y = 0; y < size[1]; ++y)
+        for (int x = 0; x < size[0]; ++x, ++from) {
+            const auto [to_x, to_y] = upright_place(orientation, {x, y}, size);
+            const auto to = static_cast<std::size_t>(to_y) * static_cast<std::size_t>(texture.width) +
+                            static_cast<std::size_t>(to_x);
+            std::copy_n(&texture.rgb[3 * from], 3, &rgb[3 * to]);
+            if (!alpha.empty()) alpha[to] = texture.alpha[from];
+        }
+    texture.rgb = std::move(rgb);
+    texture.alpha = std::move(alpha);
+}
+
 /// `is_tiff`: whose colours may be stored multiplied by alpha, and are divided by it; others' are straight.
 std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std::vector<float>& values,
                                           bool is_tiff) {
@@ -99,6 +142,7 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
         }
     }
     texture->drop_opaque_alpha();
+    turn_upright(*texture, spec.get_int_attribute("Orientation", 1));
     return texture;
 }
 

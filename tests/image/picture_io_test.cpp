@@ -183,6 +183,48 @@ TEST_CASE("pictures of every kind become linear", "[image]") {
         tiff_of("associated.tif", {0.4, 0.6, 0.1});
         tiff_of("straight.tif", {0.2, 0.3, 0.05});
     }
+    SECTION("a picture whose camera was held otherwise is turned upright, whatever the file") {
+        // Exif 2.3, table of Orientation: which side of the upright picture row 0 and column 0 are.
+        constexpr std::array kSides{"TL", "TR", "BR", "BL", "LT", "RT", "RB", "LB"};
+        for (const std::string kind : {"tif", "jpg"})
+            for (std::size_t held = 1; held <= 8; ++held) {
+                const auto held_file = [&](std::size_t tag) {
+                    const std::string name = "held" + std::to_string(tag) + "." + kind;
+                    oiiotool(folder,
+                             "--pattern fill:topleft=0.1,0.2,0.3,1:topright=0.9,0.2,0.4,0.9:"
+                             "bottomleft=0.1,0.8,0.5,0.8:bottomright=1,1,0.6,0.7 16x8 4 " +
+                                 std::string(kind == "jpg" ? "--ch R,G,B " : "") + "--attrib Orientation " +
+                                 std::to_string(tag) + " -d uint8 -o " + name);
+                    return name;
+                };
+                const auto plain = read_texture(folder + "/" + held_file(1));
+                const std::string name = held_file(held);
+                const auto upright = read_texture(folder + "/" + name);
+                INFO(name);
+                REQUIRE(upright->width == (held < 5 ? 16 : 8));
+                REQUIRE(upright->height == (held < 5 ? 8 : 16));
+                std::size_t off = 0;
+                for (int y = 0; y < 8; ++y)
+                    for (int x = 0; x < 16; ++x) {
+                        int to_x = 0, to_y = 0;
+                        for (const auto& [side, inward] :
+                             {std::pair{kSides[held - 1][0], y}, std::pair{kSides[held - 1][1], x}}) {
+                            if (side == 'L') to_x = inward;
+                            if (side == 'R') to_x = upright->width - 1 - inward;
+                            if (side == 'T') to_y = inward;
+                            if (side == 'B') to_y = upright->height - 1 - inward;
+                        }
+                        const auto from = static_cast<std::size_t>(y * 16 + x),
+                                   to = static_cast<std::size_t>(to_y * upright->width + to_x);
+                        for (std::size_t c = 0; c < 3; ++c)
+                            off += upright->rgb[3 * to + c] != plain->rgb[3 * from + c];
+                        if (kind != "jpg") off += upright->alpha[to] != plain->alpha[from];
+                    }
+                CHECK(off == 0);
+                if (kind == "jpg")
+                    CHECK(decode_texture(file_bytes(folder + "/" + name), "held")->rgb == upright->rgb);
+            }
+    }
     SECTION("a data window is placed in its display window") {
         oiiotool(folder,
                  "--pattern constant:color=1,1,1 4x3 3 --origin +2+1 --fullsize 8x6+0+0 -o window.exr");
