@@ -11,6 +11,7 @@
 #include "fuzz/random_scene.h"
 #include "fuzz/target.h"
 #include "inverse/maps/target.h"
+#include "render/world/world.h"
 #include "trilens/image.h"
 #include "trilens/maps.h"
 #include "trilens/render.h"
@@ -129,8 +130,8 @@ void require_view(const Mapped& mapped, const FilmMap& view, const ShotRays& sho
 }
 
 /// What one mirror reflects, or one body of glass refracts twice: the ways that an unwrapped map has.
-bool is_usual(std::span<const PathEvent> events) {
-    if (events.size() == 1) return events[0].event == Event::kReflect;
+bool is_usual(const World& world, std::span<const PathEvent> events) {
+    if (events.size() == 1) return events[0].event == Event::kReflect && world.optics[events[0].optic].mirror;
     return events.size() == 2 && events[0].event == Event::kTransmit && events[1].event == Event::kTransmit &&
            events[0].optic == events[1].optic;
 }
@@ -163,7 +164,7 @@ void require_complete(const Mapped& mapped, const FilmMap& map, const ShotRays& 
             for (int k = 0; k < 4 && is_one; ++k) {
                 const ShotRay& ray = shot.rays[index_of(x + k % 2, y + k / 2, film.width)];
                 const std::optional<Vec2> at = mapped.pixel(ray);
-                is_one = at && mapped.is_free(ray) && is_usual(events) &&
+                is_one = at && mapped.is_free(ray) && is_usual(mapped.renderer.world(), events) &&
                          is_same_way(events, shot.events_of(ray)) &&
                          std::max({ray.weight.x, ray.weight.y, ray.weight.z}) > 1e-3;
                 if (is_one) corners[static_cast<std::size_t>(k)] = *at;

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <set>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "base/files/files.h"
 #include "base/util/check.h"
@@ -57,14 +59,15 @@ void check_layout(const Image& image) {
         TRILENS_CHECK(name.rfind(kOwnPrefix, 0) == 0, "metadata names start with trilens:");
 }
 
-/// Where the library writes, and why it failed last.
+constexpr std::size_t kShortName = 31;  // bytes; files with longer names (to 255) are marked for old readers
+
+/// Where the library writes.
 struct Sink {
     std::vector<unsigned char> file;  // where there is no writer
     ExrStrips::Writer writer;
     std::vector<unsigned char> pending;  // for the writer, from byte `from` of the file on
     std::uint64_t from = 0;
     std::exception_ptr failed;  // what the writer threw
-    std::string reason;
 
     void put(std::uint64_t at, std::span<const unsigned char> bytes) {
         if (!writer) return keep(at, bytes);
@@ -135,10 +138,15 @@ int64_t write_to_sink(exr_const_context_t, void* user, const void* bytes, std::u
     return static_cast<int64_t>(size);
 }
 
-void keep_reason(exr_const_context_t exr, exr_result_t, const char* message) {
-    void* user = nullptr;
-    if (exr && message && exr_get_user_data(exr, &user) == EXR_ERR_SUCCESS && user)
-        static_cast<Sink*>(user)->reason = message;
+/// Why the last call of this thread failed: the library tells it while it holds the file's lock, which asking
+/// it for the user's data would wait for.
+std::string& last_reason() {
+    thread_local std::string reason;
+    return reason;
+}
+
+void keep_reason(exr_const_context_t, exr_result_t, const char* message) {
+    if (message) last_reason() = message;
 }
 
 }  // namespace
@@ -150,7 +158,8 @@ ExrStrips::State::~State() {
 void ExrStrips::State::require(exr_result_t result) {
     if (sink.failed) std::rethrow_exception(sink.failed);
     if (result == EXR_ERR_SUCCESS) return;
-    const std::string why = sink.reason.empty() ? exr_get_default_error_message(result) : sink.reason;
+    const std::string told = std::exchange(last_reason(), {});
+    const std::string why = told.empty() ? exr_get_default_error_message(result) : told;
     throw OutputError(name, "cannot be encoded: " + library_reason(why));
 }
 
@@ -165,6 +174,12 @@ void ExrStrips::State::open(const Image& layout) {
 }
 
 void ExrStrips::State::describe(const Image& layout) {
+    const auto is_long = [](const std::string& given) { return given.size() > kShortName; };
+    if (std::any_of(layout.channels.begin(), layout.channels.end(),
+                    [&](const Channel& channel) { return is_long(channel.name); }) ||
+        std::any_of(layout.metadata.begin(), layout.metadata.end(),
+                    [&](const auto& entry) { return is_long(entry.first); }))
+        require(exr_set_longname_support(exr, 1));
     int part = 0;
     require(exr_add_part(exr, nullptr, EXR_STORAGE_SCANLINE, &part));
     exr_attr_box2i_t display{}, data{};

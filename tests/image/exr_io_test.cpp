@@ -360,6 +360,20 @@ TEST_CASE("what cannot be written is named with its reason and leaves nothing be
     CHECK(files_in(folder) == 2);
 }
 
+TEST_CASE("long names of channels are kept, longer ones than the format holds are an error that says so",
+          "[image][bad-input]") {
+    Image image = random_image(7, 3, 2);
+    const std::string file = trilens_test::scratch_dir("exr_long_names") + "/a.exr";
+    for (const std::size_t length : {31, 32, 255}) {
+        image.channels.front().name = std::string(length, 'n');
+        write_exr(file, image);
+        check_same(image, read_exr(file));
+    }
+    image.channels.front().name = std::string(300, 'n');
+    CHECK_THROWS_AS(encode_exr("long.exr", image), OutputError);
+    CHECK_THROWS_WITH(encode_exr("long.exr", image), ContainsSubstring("long.exr: cannot be encoded: "));
+}
+
 TEST_CASE("files of other programs: half channels, tiles, parts", "[image]") {
     if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     const std::string folder = trilens_test::scratch_dir("exr_others");
