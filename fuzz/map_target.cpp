@@ -95,17 +95,15 @@ void require_places(const Mapped& mapped, const FilmMap& map) {
         shoot.path = EventWord(word);
         const ShotRays shot = mapped.renderer.shoot(places, shoot);
         for (std::size_t i = 0; i < wanted.size(); ++i) {
-            const std::optional<Vec3> middle = mapped.shown(shot.rays[5 * i]);
-            if (!middle) continue;
-            double reach = 0;
-            bool is_whole = true;
-            for (std::size_t k = 1; k < 5; ++k) {
-                const std::optional<Vec3> side = mapped.shown(shot.rays[5 * i + k]);
-                is_whole = is_whole && side;
-                if (side) reach = std::max(reach, length(*side - *middle));
-            }
+            std::array<std::optional<Vec3>, 5> ends;
+            for (std::size_t k = 0; k < 5; ++k) ends[k] = mapped.shown(shot.rays[5 * i + k]);
+            const auto count = std::ranges::count_if(ends, [](const auto& end) { return end.has_value(); });
+            if (count == 0) continue;
             is_told[i] = true;
-            is_right[i] = is_right[i] || !is_whole || length(wanted[i] - *middle) <= reach;
+            double reach = 0;
+            for (std::size_t k = 1; k < 5 && count == 5; ++k)
+                reach = std::max(reach, length(*ends[k] - *ends[0]));
+            is_right[i] = is_right[i] || count < 5 || length(wanted[i] - *ends[0]) <= reach;
         }
     }
     for (std::size_t i = 0; i < wanted.size(); ++i)

@@ -291,6 +291,24 @@ TEST_CASE("what cannot be unwrapped is told in one message", "[inverse][bad-inpu
         CHECK_THROWS_AS(Target(parse_target(text, world->scene), world->scene), Error);
 }
 
+TEST_CASE("a flat object's rectangle is that of its faces that have an area", "[inverse]") {
+    ObjectMesh sheet;
+    sheet.points = {{1, 2, 0}, {5, 2, 0}, {5, 2, -3}, {1, 2, -3}, {0, 0, 0}};
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const std::optional<FlatRectangle> plain = flat_rectangle(sheet);
+    REQUIRE(plain);
+    CHECK(length(plain->u - Vec3(4, 0, 0)) + length(plain->v - Vec3(0, 0, -3)) < 1e-12);
+    for (const IdTriple& empty : {IdTriple{3, 3, 3}, IdTriple{2, 2, 1}, IdTriple{0, 0, 3}}) {
+        ObjectMesh with = sheet;
+        with.triangles.insert(with.triangles.begin(), empty);
+        const std::optional<FlatRectangle> same = flat_rectangle(with);
+        REQUIRE(same);
+        CHECK(same->origin == plain->origin);
+        CHECK(same->u == plain->u);
+        CHECK(same->v == plain->v);
+    }
+}
+
 TEST_CASE("the bicubic filter keeps lines straight, and a footprint is the mean of what it covers",
           "[inverse]") {
     Texture ramp{40, 30, {}, {}};

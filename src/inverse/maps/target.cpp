@@ -85,17 +85,20 @@ std::optional<CornerWeights> corner_weights(const std::array<Vec2, 3>& uvs) {
 
 std::optional<FlatRectangle> flat_rectangle(const ObjectMesh& object) {
     // The normal of the whole: the sum over triangles, twice the area of each.
+    const auto double_area = [&](const IdTriple& t) {
+        return cross(object.points[t[1]] - object.points[t[0]], object.points[t[2]] - object.points[t[0]]);
+    };
     Vec3 sum{0};
     double area = 0, size = 0;
     for (const IdTriple& t : object.triangles) {
-        const Vec3 n =
-            cross(object.points[t[1]] - object.points[t[0]], object.points[t[2]] - object.points[t[0]]);
+        const Vec3 n = double_area(t);
         sum += n;
         area += length(n);
     }
     if (!(area > 0) || length(sum) < (1 - 1e-6) * area) return std::nullopt;
     const Vec3 normal = normalize_or_zero(sum);
-    const IdTriple& first = object.triangles[0];
+    const IdTriple& first = *std::ranges::find_if(
+        object.triangles, [&](const IdTriple& t) { return length(double_area(t)) > 0; });
     const Vec3& start = object.points[first[0]];
     const Vec3 right = normalize_or_zero(object.points[first[1]] - start), up = cross(normal, right);
     Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
