@@ -16,6 +16,7 @@ Image image_of(const Texture& texture) {
         for (std::size_t p = 0; p < values.size(); ++p) values[p] = texture.rgb[3 * p + c];
         image.channels.push_back({std::string(1, "RGB"[c]), std::move(values)});
     }
+    if (!texture.alpha.empty()) image.channels.push_back({"A", texture.alpha});
     return image;
 }
 

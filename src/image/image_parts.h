@@ -15,7 +15,8 @@ struct ImagePart {
 };
 
 /// Reads every part of any picture: of OpenEXR all channels as read_image does, of other formats (PNG, JPEG
-/// and their like) one part with R, G and B in linear Rec.709, their alpha left out. Throws InputError.
+/// and their like) one part with R, G and B in linear Rec.709 and, where any pixel is not opaque, A, which
+/// the colours are not multiplied by. Throws InputError.
 std::vector<ImagePart> read_image_parts(const std::string& file);
 
 }  // namespace trilens

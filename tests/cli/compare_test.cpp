@@ -134,6 +134,31 @@ TEST_CASE("PNG pictures are compared in linear light, with each other and with O
             REQUIRE(value == Approx(0.2).margin(0.004));
 }
 
+TEST_CASE("how far pictures of other formats are opaque is compared, or named where only one says it",
+          "[cli][compare]") {
+    if (!has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
+    const std::string folder = scratch_dir("cli_compare_opacity");
+    for (const std::string kind : {"png", "tif"}) {
+        for (const std::string alpha : {"0.2", "0.7", "1"})
+            oiiotool(folder, "--pattern constant:color=0.8,0.4,0.2," + alpha +
+                                 " 8x6 4 -d uint8 --attrib oiio:UnassociatedAlpha 1 -o " + alpha + "." +
+                                 kind);
+        oiiotool(folder, "0.7." + kind + " --ch R,G,B -d uint8 -o none." + kind);
+        const auto compared = [&](const std::string& a, const std::string& b) {
+            return run_trilens("compare " + folder + "/" + a + "." + kind + " " + folder + "/" + b + "." +
+                               kind);
+        };
+        INFO(kind);
+        CHECK(compared("0.7", "0.7").exit_code == 0);
+        const auto other = compared("0.7", "0.2");
+        CHECK(other.exit_code == 1);
+        CHECK(other.out.find("channel A: 0.2, reference 0.7") != std::string::npos);
+        CHECK(compared("0.7", "1").out.find("only in the reference: A") != std::string::npos);
+        CHECK(compared("1", "0.7").out.find("only in the test: A") != std::string::npos);
+        CHECK(compared("1", "none").out.find("left out") == std::string::npos);
+    }
+}
+
 TEST_CASE("half against float, and a part of several", "[cli][compare]") {
     if (!has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
     const std::string folder = scratch_dir("cli_compare_parts");
