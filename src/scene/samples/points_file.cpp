@@ -10,6 +10,7 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
+#include "json/json.h"
 #include "scene/data/scene.h"
 #include "scene/formats/line_scanner.h"
 #include "scene/samples/point_cloud.h"
