@@ -4,6 +4,8 @@ Projects a scene at several resolutions, traces it once, measures how many pixel
 where the truth shows it, and plots that error with its fitted order.
 
     python3 error_against_resolution.py [SCENE.json] [--size 320x240] [-o error_against_resolution.png]
+
+Without a scene it is scenes/sphere.json of the source tree, or where that is not, the module's example of a mirror sphere.
 """
 import argparse
 import pathlib
@@ -16,17 +18,25 @@ import numpy as np
 
 import trilens
 
-SPHERE = pathlib.Path(__file__).resolve().parents[2] / "scenes/sphere.json"
+SPHERE = pathlib.Path(__file__).resolve().parent / "../../scenes/sphere.json"
 RESOLUTIONS = [1, 2, 4, 8, 16]
 SHOWN = 4  # the resolution whose pictures are shown
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("scene", nargs="?", default=SPHERE)
+    parser.add_argument("scene", nargs="?", default=SPHERE if SPHERE.exists() else None)
     parser.add_argument("--size", default="320x240", help="film size in pixels, WxH")
     parser.add_argument("-o", "--output", default="error_against_resolution.png")
     return parser.parse_args()
+
+
+def load_scene(file, size):
+    width, height = map(int, size.split("x"))
+    film = {"/film/width": width, "/film/height": height}
+    if file is None:
+        return trilens.parse_scene(trilens.scene_examples()["mirror-sphere"], overrides=film)
+    return trilens.load_scene(file, film)
 
 
 def measure(renderer, truth):
@@ -76,9 +86,7 @@ def show_errors(axes, found):
 
 def main():
     arguments = parse_arguments()
-    width, height = map(int, arguments.size.split("x"))
-    scene = trilens.load_scene(arguments.scene, {"/film/width": width, "/film/height": height})
-    renderer = trilens.Renderer(scene)
+    renderer = trilens.Renderer(load_scene(arguments.scene, arguments.size))
     truth = renderer.trace()
     found = measure(renderer, truth)
 

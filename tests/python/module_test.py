@@ -2,6 +2,7 @@
 import ast
 import inspect
 import re
+import shutil
 import subprocess
 import sys
 
@@ -102,13 +103,23 @@ def test_the_bindings_stand_on_the_public_headers_alone():
     assert ("<", "trilens/trilens.h") in included
 
 
-def test_the_example_runs(tmp_path):
+def run_example(example, tmp_path):
     pytest.importorskip("matplotlib", reason="python3-matplotlib draws the example's plot")
     result = subprocess.run(
-        [sys.executable, SOURCE / "examples/python/error_against_resolution.py", "--size", "96x72", "-o", tmp_path / "plot.png"],
+        [sys.executable, example, "--size", "96x72", "-o", tmp_path / "plot.png"],
         capture_output=True, text=True, env={"PYTHONPATH": ":".join(sys.path), "MPLCONFIGDIR": str(tmp_path)})
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "plot.png").read_bytes()[:4] == b"\x89PNG"
-    orders = [float(value) for value in re.findall(r"order (\d+\.\d+)", result.stdout)]
+    return result.stdout
+
+
+def test_the_example_runs(tmp_path):
+    out = run_example(SOURCE / "examples/python/error_against_resolution.py", tmp_path)
+    orders = [float(value) for value in re.findall(r"order (\d+\.\d+)", out)]
     assert orders and all(1.5 < order < 2.6 for order in orders)
-    assert np.all(np.diff([float(value) for value in re.findall(r"mean (\S+) px", result.stdout)]) < 0)
+    assert np.all(np.diff([float(value) for value in re.findall(r"mean (\S+) px", out)]) < 0)
+
+
+def test_the_example_runs_where_no_scenes_are_near(tmp_path):
+    example = shutil.copy(SOURCE / "examples/python/error_against_resolution.py", tmp_path)
+    assert len(re.findall(r"order \d+\.\d+", run_example(example, tmp_path))) == 3
