@@ -31,7 +31,7 @@ foreach(component IN LISTS components)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package_${component}} COMPONENT ${component})
 endforeach()
 set(program_doc ${CMAKE_INSTALL_DATADIR}/doc/${package_program})
-install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${program_doc} COMPONENT program)
+# README.md stays out: its links lead to what no package has; trilens-doc has all pages.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes ${PROJECT_SOURCE_DIR}/examples/render-tests
   DESTINATION ${program_doc}/examples COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/consumer
@@ -99,12 +99,21 @@ endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${own}, ${package_program} (= ${PROJECT_VERSION}), libglm-dev")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${own}")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS fonts-dejavu-core)  # of labels
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ${package_viewer})
+# The models are those of examples/scenes/engine.json.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "${package_viewer}, ${package_documentation}, assimp-testmodels")
 set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "${own}, ${package_program} (= ${PROJECT_VERSION})")
 if(TRILENS_PYTHON)
   find_package(Python REQUIRED COMPONENTS Interpreter)
   math(EXPR next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "${own}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)  # of the example
+  # What dh_python3 would write: bytecode is made at once, and goes with the package.
+  file(WRITE ${doc}/postinst
+    "#!/bin/sh\nset -e\nif [ \"$1\" = configure ] && command -v py3compile >/dev/null; then\n    py3compile -p ${package_python}\nfi\n")
+  file(WRITE ${doc}/prerm
+    "#!/bin/sh\nset -e\nif command -v py3clean >/dev/null; then\n    py3clean -p ${package_python}\nfi\n")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${doc}/postinst ${doc}/prerm)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
 endif()
 include(CPack)

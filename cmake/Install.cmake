@@ -74,7 +74,12 @@ if(NOT TRILENS_CORE_ONLY)
   add_custom_target(trilens_shell ALL DEPENDS ${shell}/made)
   install(DIRECTORY ${shell}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)
   install(FILES ${shell}/trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
-  install(FILES ${shell}/_trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
+  # Debian's zsh looks for those of packages in a folder of its own.
+  set(zsh_folder site-functions)
+  if(TRILENS_DEBIAN)
+    set(zsh_folder vendor-completions)
+  endif()
+  install(FILES ${shell}/_trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} COMPONENT program)
   install(FILES ${shell}/trilens.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
   # JSON Schemas, for editors: a file names its own by "$schema".
   install(FILES ${shell}/trilens-scene-1.schema.json ${shell}/trilens-sweep-summary-1.schema.json
