@@ -15,28 +15,21 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
-#include <NCollection_DataMap.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <StepGeom_CartesianPoint.hxx>
-#include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_FaceSurface.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_MapOfShape.hxx>
-#include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
-#include <TransferBRep.hxx>
-#include <Transfer_TransientProcess.hxx>
-#include <XSControl_TransferReader.hxx>
-#include <XSControl_WorkSession.hxx>
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
 #include <memory>
 
+#include "cad/cad_names.h"
 #include "cad/cad_surfaces.h"
 
 namespace trilens {
@@ -51,23 +44,6 @@ std::unique_ptr<XSControl_Reader> reader_of(const std::string& file) {
     if (ending == ".step" || ending == ".stp") return std::make_unique<STEPControl_Reader>();
     if (ending == ".iges" || ending == ".igs") return std::make_unique<IGESControl_Reader>();
     throw InputError(file, "", "is neither STEP (.step, .stp) nor IGES (.iges, .igs)");
-}
-
-using ShapeNames =
-    NCollection_DataMap<TopoDS_Shape, Handle(TCollection_HAsciiString), TopTools_ShapeMapHasher>;
-
-/// What a STEP file calls the bodies that came of its solids, shells and faces.
-ShapeNames find_names(const XSControl_Reader& reader) {
-    const Handle(Interface_InterfaceModel) model = reader.Model();
-    const Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
-    ShapeNames names;
-    for (int i = 1; i <= model->NbEntities(); ++i) {
-        const auto item = Handle(StepRepr_RepresentationItem)::DownCast(model->Value(i));
-        if (item.IsNull() || item->Name().IsNull() || item->Name()->IsEmpty()) continue;
-        const TopoDS_Shape shape = TransferBRep::ShapeResult(process, item);
-        if (!shape.IsNull()) names.Bind(shape.Located(TopLoc_Location()), item->Name());
-    }
-    return names;
 }
 
 /// Before anything is made of them: with an infinite one OpenCASCADE comes to no end.
@@ -122,9 +98,8 @@ struct Reading {
 
     void add_body(const TopoDS_Shape& shape) {
         const bool is_solid = shape.ShapeType() == TopAbs_SOLID;
-        const Handle(TCollection_HAsciiString)* const name = names.Seek(shape.Located(TopLoc_Location()));
-        CadBody body{
-            name ? (*name)->ToCString() : "body " + std::to_string(model.bodies.size() + 1), is_solid, {}};
+        const std::string* const name = names.Seek(shape.Located(TopLoc_Location()));
+        CadBody body{name ? *name : "body " + std::to_string(model.bodies.size() + 1), is_solid, {}};
         for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
             if (!known.Add(at.Current()) && !is_solid) continue;  // solids may share one
             CadFace& face = body.faces.emplace_back();

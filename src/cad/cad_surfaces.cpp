@@ -28,6 +28,9 @@ namespace {
 /// A face whose area is this near to its surface's, as a share of it, is all of it.
 constexpr double kWhole = 1e-6;
 
+/// Parameters as near as this to an end of the surface's, as a share of the face's range, are that end.
+constexpr double kSameParameter = 1e-9;
+
 Vec3 vec_of(const gp_XYZ& at) {
     return {at.X(), at.Y(), at.Z()};
 }
@@ -179,18 +182,51 @@ std::vector<CadSurface> flat_surfaces(const TopoDS_Face& oriented) {
     return surfaces;
 }
 
+struct ParameterRange {
+    double first = 0, last = 0;
+
+    /// Without what rounding added beyond the surface's own range, which is a period where `is_periodic`: the
+    /// conversions take it for another turn, or refuse it.
+    void draw_into(const ParameterRange& own, bool is_periodic) {
+        const double room = kSameParameter * (last - first);
+        if (is_periodic) {
+            if (last - first >= own.last - own.first - room) *this = own;
+            return;
+        }
+        if (first <= own.first + room) first = own.first;
+        if (last >= own.last - room) last = own.last;
+    }
+};
+
+/// What a face's sides span of its surface's parameters.
+struct ParameterBox {
+    ParameterRange u, v;
+
+    ParameterBox(const TopoDS_Face& face, const Geom_Surface& surface) {
+        BRepTools::UVBounds(face, u.first, u.last, v.first, v.last);
+        ParameterRange all_u, all_v;
+        surface.Bounds(all_u.first, all_u.last, all_v.first, all_v.last);
+        u.draw_into(all_u, surface.IsUPeriodic());
+        v.draw_into(all_v, surface.IsVPeriodic());
+    }
+};
+
 }  // namespace
 
 void set_surfaces(const TopoDS_Face& face, CadFace& into) {
     try {
-        double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-        BRepTools::UVBounds(face, u0, u1, v0, v1);
         const Handle(Geom_Surface) whole = BRep_Tool::Surface(face);
         if (whole.IsNull()) {
             into.fault = "it has no surface";
             return;
         }
-        into.covered = area_of(face) / area_of(BRepBuilderAPI_MakeFace(whole, u0, u1, v0, v1, 1e-9).Face());
+        const auto [u, v] = ParameterBox(face, *whole);
+        if (!(u.first < u.last && v.first < v.last)) {
+            into.fault = "as OpenCASCADE reads it, it has no area";
+            return;
+        }
+        into.covered = area_of(face) /
+                       area_of(BRepBuilderAPI_MakeFace(whole, u.first, u.last, v.first, v.last, 1e-9).Face());
         if (!(into.covered < 1 - kWhole)) into.covered = 1;
         if (into.covered < 1 && BRepAdaptor_Surface(face).GetType() == GeomAbs_Plane) {
             into.surfaces = flat_surfaces(face);
@@ -199,12 +235,14 @@ void set_surfaces(const TopoDS_Face& face, CadFace& into) {
                 return;
             }
         }
-        const Handle(Geom_Surface) cut = new Geom_RectangularTrimmedSurface(whole, u0, u1, v0, v1);
+        const Handle(Geom_Surface) cut =
+            new Geom_RectangularTrimmedSurface(whole, u.first, u.last, v.first, v.last);
         into.surfaces = {
             surface_of(GeomConvert::SurfaceToBSplineSurface(cut), face.Orientation() == TopAbs_REVERSED)};
     } catch (const Standard_Failure& failure) {
         into.surfaces.clear();
-        into.fault = std::string("no NURBS surface can be made of it: ") + failure.GetMessageString();
+        into.fault = std::string("its surface has no form as NURBS (OpenCASCADE: ") +
+                     failure.GetMessageString() + "), which mirrors and glass need; as an object it can stay";
     }
 }
 

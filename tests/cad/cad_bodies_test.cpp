@@ -4,9 +4,12 @@
 
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRep_Builder.hxx>
+#include <Interface_Static.hxx>
+#include <STEPControl_Controller.hxx>
 #include <TopoDS_Compound.hxx>
 #include <cmath>
 #include <fstream>
+#include <regex>
 
 #include "cad_files.h"
 
@@ -106,6 +109,50 @@ TEST_CASE("a STEP file's names, unit and losses are told", "[cad]") {
         far.replace(far.find(point), point.size(), "CARTESIAN_POINT('',(" + number + ",0.,0.))");
         CHECK(refusal([&] { read(far); }) == file_named("named.step") + ": goes beyond coordinates of 1e30");
     }
+}
+
+TEST_CASE("bodies of a STEP file without names of their own have their parts'", "[cad]") {
+    BRep_Builder builder;
+    TopoDS_Compound both;
+    builder.MakeCompound(both);
+    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 2, 3, 4).Solid());
+    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 3, 4).Solid());
+    STEPControl_Controller::Init();
+    REQUIRE(Interface_Static::SetIVal("write.step.assembly", 1));
+    const std::string file = written(both, "parts.step");
+    REQUIRE(Interface_Static::SetIVal("write.step.assembly", 0));
+    // The writer's own names of parts are none.
+    CHECK(read_cad_file(file, 1e-3).bodies.at(1).name == "body 2");
+
+    std::ifstream in(file);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    std::size_t at = 0;
+    for (const std::string name : {"telescope", "primary mirror", "tube"}) {
+        at = text.find("= PRODUCT(", at);
+        REQUIRE(at != std::string::npos);
+        at += 10;
+        text.replace(at, text.find(",(", at) - at, "'a part','" + name + "',''");
+    }
+    const auto names = [](const std::string& changed) {
+        std::ofstream(file_named("parts named.step")) << changed;
+        std::vector<std::string> found;
+        for (const CadBody& body : read_cad_file(file_named("parts named.step"), 1e-3).bodies)
+            found.push_back(body.name);
+        return found;
+    };
+    CHECK(names(text) == std::vector<std::string>{"primary mirror", "tube"});
+    // As other exporters write it: a part's representation is another one, said to be that of its solid.
+    std::smatch solid;
+    const std::regex of_solid(R"((#\d+) = ADVANCED_BREP_SHAPE_REPRESENTATION\('',\((#\d+),#\d+\),(#\d+)\);)");
+    REQUIRE(std::regex_search(text, solid, of_solid));
+    std::string apart = std::regex_replace(text, std::regex("," + solid.str(1) + "([,)])"), ",#90001$1");
+    apart.insert(apart.rfind("ENDSEC;"),
+                 "#90001 = SHAPE_REPRESENTATION('',(" + solid.str(2) + ")," + solid.str(3) +
+                     ");\n#90002 = SHAPE_REPRESENTATION_RELATIONSHIP('','',#90001," + solid.str(1) + ");\n");
+    CHECK(names(apart) == std::vector<std::string>{"primary mirror", "tube"});
+    // A solid's own name is nearer.
+    text.insert(text.find("MANIFOLD_SOLID_BREP('") + 21, "glass blank");
+    CHECK(names(text) == std::vector<std::string>{"glass blank", "tube"});
 }
 
 TEST_CASE("files that are no CAD files are refused", "[cad][bad-input]") {

@@ -3,12 +3,15 @@
 #include <trilens/render.h>
 #include <trilens/scene.h>
 
+#include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
@@ -16,6 +19,8 @@
 #include <GeomAPI_PointsToBSplineSurface.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <TColgp_Array2OfPnt.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
 #include <gp_Circ.hxx>
 
 #include <cmath>
@@ -92,6 +97,19 @@ double area_of(const std::vector<CadFace>& faces) {
                 sum +=
                     length(front(surface, (i % kSquares + 0.5) / kSquares, (i / kSquares + 0.5) / kSquares)) /
                     (kSquares * kSquares);
+    return sum;
+}
+
+/// Within fronts that look outwards, by the divergence theorem on the same squares.
+double volume_of(const std::vector<CadFace>& faces) {
+    constexpr int kSquares = 64;
+    double sum = 0;
+    for (const CadFace& face : faces)
+        for (const CadSurface& surface : face.surfaces)
+            for (int i = 0; i < kSquares * kSquares; ++i) {
+                const double u = (i % kSquares + 0.5) / kSquares, v = (i / kSquares + 0.5) / kSquares;
+                sum += dot(at(surface, u, v), front(surface, u, v)) / (3 * kSquares * kSquares);
+            }
     return sum;
 }
 
@@ -234,6 +252,44 @@ TEST_CASE("a trimmed face says so, and keeps its trims as triangles", "[cad]") {
         two.push_back(read_back(BRepPrimAPI_MakeBox(1, 1, 1).Solid(), "box.step")[0]);
         two[1].name = "lid";
         CHECK(scene_of_cad({two, {}}, as_object).warnings.empty());
+    }
+}
+
+TEST_CASE("solids whose files overstep the parameters of their surfaces by rounding are whole glass",
+          "[cad][oracle]") {
+    struct Solid {
+        const char* name;
+        TopoDS_Shape shape;
+        double volume;
+    };
+    const double pi = std::numbers::pi;
+    const TopoDS_Shape box = BRepPrimAPI_MakeBox(8, 6, 4).Shape();
+    BRepFilletAPI_MakeFillet fillet(box);
+    for (TopExp_Explorer at(box, TopAbs_EDGE); at.More(); at.Next())
+        fillet.Add(1, TopoDS::Edge(at.Current()));
+    const TopoDS_Shape rounded_box = fillet.Shape();
+    const TopoDS_Shape low = BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, -8), 10).Shape(),
+                       high = BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 8), 10).Shape();
+    const std::vector<Solid> all{
+        {"frustum.step", BRepPrimAPI_MakeCone(5, 2, 10).Shape(), 130 * pi},
+        {"cone.step", BRepPrimAPI_MakeCone(5, 0, 10).Shape(), 250 * pi / 3},
+        {"biconvex.step", BRepAlgoAPI_Common(low, high).Shape(), 2 * 4 * 28 * pi / 3},
+        {"rounded box.step", rounded_box, 6 * 4 * 2 + 2 * (6 * 4 + 4 * 2 + 2 * 6) + 12 * pi + 4 * pi / 3}};
+    for (const Solid& solid : all) {
+        CAPTURE(solid.name);
+        const std::vector<CadBody> bodies = read_back(solid.shape, solid.name);
+        REQUIRE(bodies.size() == 1);
+        for (const CadFace& face : bodies[0].faces) {
+            CHECK(face.fault.empty());
+            CHECK(face.covered == 1);
+        }
+        CHECK(std::fabs(volume_of(bodies[0].faces) / solid.volume - 1) < 1e-3);
+        CadOptions options = asked(solid.name);
+        options.glass = {"*"};
+        const CadScene made = scene_of_cad({bodies, {}}, options);
+        CHECK(made.warnings.empty());
+        // No edge of its patches is open.
+        CHECK(parse_scene(made.text).warnings == std::vector<std::string>{});
     }
 }
 
