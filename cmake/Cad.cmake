@@ -6,7 +6,7 @@ if(NOT TRILENS_CAD STREQUAL "OFF")
   set(libraries)
   set(TRILENS_CAD_FOUND ON)
   # Others' dependencies, first what needs them: 7.8 has parts of the first two under the other names.
-  foreach(name TKSTEP TKSTEPBase TKDESTEP TKIGES TKDEIGES TKXSBase TKMesh TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d TKMath TKernel)
+  foreach(name TKSTEP TKSTEPBase TKDESTEP TKIGES TKDEIGES TKXSBase TKMesh TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d TKG2d TKMath TKernel)
     find_library(TRILENS_OCCT_${name} ${name})
     mark_as_advanced(TRILENS_OCCT_${name})
     if(TRILENS_OCCT_${name})

@@ -30,6 +30,7 @@
 #include <memory>
 
 #include "cad/cad_names.h"
+#include "cad/cad_poles.h"
 #include "cad/cad_surfaces.h"
 
 namespace trilens {
@@ -91,8 +92,13 @@ void set_triangles(const TopoDS_Face& face, CadFace& into) {
     }
 }
 
+void mesh_shape(const TopoDS_Shape& shape, double deviation) {
+    BRepMesh_IncrementalMesh(shape, deviation, false, kMostTurn, false);
+}
+
 struct Reading {
     ShapeNames names;
+    double deviation = 0;  // of triangles, in millimetres
     CadModel model{};
     TopTools_MapOfShape known{};  // what is in one of the bodies
 
@@ -102,22 +108,27 @@ struct Reading {
         CadBody body{name ? *name : "body " + std::to_string(model.bodies.size() + 1), is_solid, {}};
         for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
             if (!known.Add(at.Current()) && !is_solid) continue;  // solids may share one
+            TopoDS_Face shown = TopoDS::Face(at.Current());
+            if (const std::optional<TopoDS_Face> whole = with_pole(shown)) {
+                shown = *whole;
+                mesh_shape(shown, deviation);
+            }
             CadFace& face = body.faces.emplace_back();
-            set_surfaces(TopoDS::Face(at.Current()), face);
-            set_triangles(TopoDS::Face(at.Current()), face);
+            set_surfaces(shown, face);
+            set_triangles(shown, face);
         }
         if (!body.faces.empty()) model.bodies.push_back(std::move(body));
     }
 };
 
-void mesh_finely(const TopoDS_Shape& shape, const std::string& file, double deviation) {
+/// In millimetres, from a share of what all of the file measures.
+double length_of(double share, const TopoDS_Shape& all, const std::string& file) {
     Bnd_Box box;
-    BRepBndLib::Add(shape, box);
-    if (box.IsVoid()) return;
+    BRepBndLib::Add(all, box);
+    if (box.IsVoid()) return share;
     if (!(box.SquareExtent() < kLargestCoordinate * kLargestCoordinate))
         throw InputError(file, "", "goes beyond coordinates of 1e30");
-    const double size = std::sqrt(box.SquareExtent());
-    BRepMesh_IncrementalMesh(shape, std::max(deviation * size, 1e-12), false, kMostTurn, false);
+    return std::max(share * std::sqrt(box.SquareExtent()), 1e-12);
 }
 
 }  // namespace
@@ -134,8 +145,8 @@ CadModel read_cad_file(const std::string& file, double deviation) {
         reader->TransferRoots();
         const TopoDS_Shape all = reader->OneShape();
         if (all.IsNull()) throw InputError(file, "", "has no face");
-        mesh_finely(all, file, deviation);
-        Reading reading{find_names(*reader)};
+        Reading reading{find_names(*reader), length_of(deviation, all, file)};
+        mesh_shape(all, reading.deviation);
         for (const TopAbs_ShapeEnum kind : {TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE})
             for (TopExp_Explorer at(all, kind); at.More(); at.Next()) reading.add_body(at.Current());
         if (reading.model.bodies.empty()) throw InputError(file, "", "has no face");

@@ -22,6 +22,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <gp_Circ.hxx>
+#include <gp_Elips.hxx>
 
 #include <cmath>
 #include <numbers>
@@ -291,6 +292,33 @@ TEST_CASE("solids whose files overstep the parameters of their surfaces by round
         // No edge of its patches is open.
         CHECK(parse_scene(made.text).warnings == std::vector<std::string>{});
     }
+}
+
+TEST_CASE("a face that ends on its axis within its meridian's parameters has its pole", "[cad][oracle]") {
+    // The lower half of an ellipsoid, under a disk: its meridian begins at the rim.
+    const gp_Elips ellipse(gp_Ax2(gp_Pnt(0, 0, 9), gp::DY(), gp::DX()), 9, 6);
+    const gp_Pnt pole(0, 0, 3), middle(0, 0, 9), rim(9, 0, 9);
+    BRepBuilderAPI_MakeWire profile(BRepBuilderAPI_MakeEdge(ellipse, 0, std::numbers::pi / 2).Edge(),
+                                    BRepBuilderAPI_MakeEdge(pole, middle).Edge(),
+                                    BRepBuilderAPI_MakeEdge(middle, rim).Edge());
+    const TopoDS_Shape bowl =
+        BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(profile.Wire()), gp::OZ()).Shape();
+    const std::vector<CadBody> bodies = read_back(bowl, "bowl.step");
+    REQUIRE(bodies.size() == 1);
+    REQUIRE(bodies[0].faces.size() == 2);
+    const double volume = 324 * std::numbers::pi;
+    CHECK(std::fabs(volume_of(bodies[0].faces) / volume - 1) < 1e-3);
+    double by_triangles = 0;
+    for (const CadFace& face : bodies[0].faces) {
+        CHECK(face.covered == 1);
+        for (const std::array<int, 3>& triangle : face.triangles)
+            by_triangles +=
+                dot(across(face, triangle), face.points[static_cast<std::size_t>(triangle[0])]) / 3;
+    }
+    CHECK(std::fabs(by_triangles / volume - 1) < 0.02);
+    CadOptions options = asked("bowl.step");
+    options.glass = {"*"};
+    CHECK(parse_scene(scene_of_cad({bodies, {}}, options).text).warnings == std::vector<std::string>{});
 }
 
 TEST_CASE("a lens of a STEP file refracts as the prescription's primitive does", "[cad][law]") {
