@@ -28,6 +28,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 
 #include "cad/cad_names.h"
 #include "cad/cad_poles.h"
@@ -97,15 +98,15 @@ void mesh_shape(const TopoDS_Shape& shape, double deviation) {
 }
 
 struct Reading {
-    ShapeNames names;
+    NameOfShape name_of;
     double deviation = 0;  // of triangles, in millimetres
     CadModel model{};
     TopTools_MapOfShape known{};  // what is in one of the bodies
 
     void add_body(const TopoDS_Shape& shape) {
         const bool is_solid = shape.ShapeType() == TopAbs_SOLID;
-        const std::string* const name = names.Seek(shape.Located(TopLoc_Location()));
-        CadBody body{name ? *name : "body " + std::to_string(model.bodies.size() + 1), is_solid, {}};
+        const std::string name = name_of(shape);
+        CadBody body{!name.empty() ? name : "body " + std::to_string(model.bodies.size() + 1), is_solid, {}};
         for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
             if (!known.Add(at.Current()) && !is_solid) continue;  // solids may share one
             TopoDS_Face shown = TopoDS::Face(at.Current());

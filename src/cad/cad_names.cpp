@@ -1,6 +1,7 @@
 #include "cad/cad_names.h"
 
 #include <Interface_InterfaceModel.hxx>
+#include <NCollection_DataMap.hxx>
 #include <StepBasic_Product.hxx>
 #include <StepBasic_ProductDefinition.hxx>
 #include <StepBasic_ProductDefinitionFormation.hxx>
@@ -15,8 +16,11 @@
 #include <StepShape_ShapeDefinitionRepresentation.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
+#include <TopoDS_Shape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
+#include <XSControl_Reader.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <initializer_list>
@@ -24,6 +28,9 @@
 
 namespace trilens {
 namespace {
+
+/// By a shape without its place.
+using ShapeNames = NCollection_DataMap<TopoDS_Shape, std::string, TopTools_ShapeMapHasher>;
 
 std::string text_of(const Handle(TCollection_HAsciiString) & text) {
     return text.IsNull() ? "" : text->ToCString();
@@ -77,7 +84,7 @@ void name_bodies(const TopoDS_Shape& shape, const std::string& name, ShapeNames&
 
 }  // namespace
 
-ShapeNames find_names(const XSControl_Reader& reader) {
+NameOfShape find_names(const XSControl_Reader& reader) {
     const Handle(Interface_InterfaceModel) model = reader.Model();
     const Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
     ShapeNames names;
@@ -97,7 +104,10 @@ ShapeNames find_names(const XSControl_Reader& reader) {
             if (!shape.IsNull()) name_bodies(shape, name->second, names);
         }
     }
-    return names;
+    return [names](const TopoDS_Shape& shape) {
+        const std::string* const name = names.Seek(shape.Located(TopLoc_Location()));
+        return name ? *name : "";
+    };
 }
 
 }  // namespace trilens

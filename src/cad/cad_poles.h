@@ -1,8 +1,9 @@
 // Faces of revolution that OpenCASCADE reads without their pole.
 #pragma once
 
-#include <TopoDS_Face.hxx>
 #include <optional>
+
+class TopoDS_Face;
 
 namespace trilens {
 
