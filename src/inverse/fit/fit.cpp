@@ -10,6 +10,7 @@
 #include "base/util/names.h"
 #include "inverse/fit/fit_problem.h"
 #include "inverse/solve/least_squares.h"
+#include "render/frame/camera_rays.h"
 #include "render/project/project.h"
 #include "render/world/world.h"
 #include "scene/read/override.h"
@@ -286,6 +287,24 @@ bool all_lost(std::vector<FitPair>& pairs) {
     return std::all_of(pairs.begin(), pairs.end(), [](const FitPair& pair) { return pair.is_lost; });
 }
 
+/// Paths are followed from cameras in air: from within glass they would be others.
+void require_cameras_in_air(const Scene& scene, std::span<const FitPair> pairs) {
+    const std::unique_ptr<World> world = make_world(scene, {});
+    for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
+        const auto is_of_camera = [c](const FitPair& pair) { return pair.camera == c; };
+        if (std::ranges::none_of(pairs, is_of_camera)) continue;
+        const CameraRays rays = make_camera_rays(scene, c);
+        const CameraMedia media = camera_media_of(*world, rays);
+        if (media.none()) continue;
+        for (const FitPair& pair : pairs) {
+            const std::optional<Ray> ray = is_of_camera(pair) ? exact_ray(rays, pair.pixel) : std::nullopt;
+            if (ray && media.of(*ray).count > 0)
+                throw InputError(scene_title(scene), fmt::format("/cameras/{}", c),
+                                 "stands in glass: a fit takes its cameras to stand in air");
+        }
+    }
+}
+
 }  // namespace
 
 FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, const FitRequest& request,
@@ -296,6 +315,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     if (request.free.empty()) throw UsageError("a fit needs something that is free");
     if (!(request.sigma > 0) || !(request.huber > 0)) throw UsageError("sigma and huber are above 0");
     std::vector<FitPair> pairs = prepare_pairs(scene, given, request);
+    require_cameras_in_air(scene, pairs);
     Json document = resolved_json(scene);
     const std::vector<FitParameter> parameters =
         find_parameters(document, request.free, file, extent_of(scene, pairs));

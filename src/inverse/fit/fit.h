@@ -107,9 +107,9 @@ struct FitResult {
 /// stand in air, and glass has its `ior` for every colour. The same result for any number of threads.
 ///
 /// Throws InputError for pointers that name no number, a scene without JSON (Scene::resolved), pairs that are
-/// too few or not finite, cameras whose rays have no common eye and are not parallel; UsageError for cameras
-/// and paths that there are not, and pairs without the image that FitMatch::kId asks for (InputError with the
-/// place of pairs that have one); ComputationError where every pair is lost.
+/// too few or not finite, cameras that stand in glass, or whose rays have no common eye and are not parallel;
+/// UsageError for cameras and paths that there are not, and pairs without the image that FitMatch::kId asks
+/// for (InputError with the place of pairs that have one); ComputationError where every pair is lost.
 FitResult fit_scene(const Scene& scene, std::span<const Correspondence> pairs, const FitRequest& request,
                     const Progress& progress = {});
 
