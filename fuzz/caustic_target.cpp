@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/util/parallel.h"
 #include "fuzz/random_scene.h"
 #include "fuzz/target.h"
 #include "trilens/image.h"
@@ -36,15 +35,10 @@ Scene made_small(Scene scene) {
 }
 
 void require_picture(const Renderer& renderer) {
-    const auto drawn = [&](int threads) {
-        set_thread_count(threads);
-        return renderer.draw({}).image;
-    };
-    const int before = thread_count();
-    const Image one = drawn(1);
-    const bool is_same = encode_image(drawn(3)) == encode_image(one);
-    set_thread_count(before);
-    require(is_same, "a picture with caustics depends on the number of threads");
+    const auto drawn = [&] { return renderer.draw({}).image; };
+    const Image one = on_threads(1, drawn);
+    require(encode_image(on_threads(3, drawn)) == encode_image(one),
+            "a picture with caustics depends on the number of threads");
     for (const char* name : {"R", "G", "B"})
         for (const float value : one.find(name)->floats())
             require(std::isfinite(value) && value >= 0, "a pixel with caustics that is no light");

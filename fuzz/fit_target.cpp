@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/util/parallel.h"
 #include "fuzz/grammar.h"
 #include "fuzz/random_scene.h"
 #include "fuzz/target.h"
@@ -87,10 +86,6 @@ Unknown unknown_of(Choices& choose, const Scene& scene) {
     return unknown;
 }
 
-bool may_be_nan(const FittedPair& pair) {
-    return pair.state == PairState::kLost;
-}
-
 void require_numbers(const FitResult& fit, std::size_t pairs) {
     require(std::isfinite(fit.rms) && std::isfinite(fit.rms_start) && std::isfinite(fit.noise),
             "a fit whose residual is no number");
@@ -100,7 +95,8 @@ void require_numbers(const FitResult& fit, std::size_t pairs) {
         require(std::isfinite(one.value) && std::isfinite(one.sigma) && one.sigma >= 0,
                 "a fitted number that is none: " + one.pointer);
     for (const FittedPair& pair : fit.pairs)
-        require(may_be_nan(pair) || std::isfinite(length(pair.residual)), "a residual that is no number");
+        require(pair.state == PairState::kLost || std::isfinite(length(pair.residual)),
+                "a residual that is no number");
 }
 
 void require_fit(const std::string& json, Choices& choose) {
@@ -114,17 +110,14 @@ void require_fit(const std::string& json, Choices& choose) {
         request.match = FitMatch::kNearest;
         std::erase_if(pairs, [&](const Correspondence& pair) { return !is_projected(renderer, pair); });
     }
-    const FitResult truth = fit_scene(scene, pairs, request);
+    const auto fitted = [&] { return fit_scene(scene, pairs, request); };
+    const FitResult truth = on_threads(1, fitted);
     require_numbers(truth, pairs.size());
     require(truth.rms_start <= kPixels,
             fmt::format("exact pairs are {} pixels off where the fit begins", truth.rms_start));
     require(truth.rms <= kPixels, fmt::format("a fit leaves the truth, for {} pixels", truth.rms));
 
-    const int before = thread_count();
-    set_thread_count(before == 1 ? 3 : 1);
-    const std::string again = fit_scene(scene, pairs, request).document;
-    set_thread_count(before);
-    require(again == truth.document, "a fit depends on the number of threads");
+    require(on_threads(3, fitted).document == truth.document, "a fit depends on the number of threads");
 
     if (unknown.beside == 0) return;
     std::vector<SceneOverride> moved;

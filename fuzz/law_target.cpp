@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "base/util/parallel.h"
 #include "fuzz/random_scene.h"
 #include "fuzz/ray_laws.h"
 #include "fuzz/target.h"
@@ -37,14 +36,11 @@ Bytes encoded(const Renderer& renderer, const PictureRequest& request) {
 /// The same bytes whatever the number of threads and the instruction set, and whether they are encoded while
 /// they are drawn or afterwards.
 Bytes drawn(const Renderer& renderer, const PictureRequest& request) {
-    const int before = thread_count();
-    set_thread_count(1);
-    const Bytes one = encoded(renderer, request);
-    set_thread_count(3);
-    require(encoded(renderer, request) == one, "a picture depends on the number of threads");
-    require(renderer.draw_exr(request).bytes == one,
+    const Bytes one = on_threads(1, [&] { return encoded(renderer, request); });
+    require(on_threads(3, [&] { return encoded(renderer, request); }) == one,
+            "a picture depends on the number of threads");
+    require(on_threads(3, [&] { return renderer.draw_exr(request).bytes; }) == one,
             "a picture that is encoded while it is drawn is another");
-    set_thread_count(before);
     const std::vector<std::string> sets = kernel_instruction_sets();
     for (std::size_t i = 1; i < sets.size(); ++i) {
         use_instruction_set(sets[i]);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/util/parallel.h"
 #include "fuzz/random_scene.h"
 #include "fuzz/target.h"
 #include "inverse/maps/target.h"
@@ -69,7 +68,10 @@ struct Mapped {
     }
 };
 
-/// Pixels of the film about a place of an unwrapped map among which what it says must be shown.
+constexpr int kLargestCell = 4;  // pixels of the target between neighbours of the film
+
+/// Pixels of the film about a place of an unwrapped map among which what it says must be shown, and of the
+/// target that a place may be off.
 constexpr double kNear = 0.1;
 
 /// Whether `project` lists an image there: of what is smaller than the distance of the rays about a place.
@@ -154,45 +156,59 @@ bool is_same_way(std::span<const PathEvent> a, std::span<const PathEvent> b) {
 /// are turned over.
 std::optional<Vec2> place_in_cell(const std::array<Vec2, 4>& corners, const Vec2& pixel) {
     const Vec2 u = corners[1] - corners[0], v = corners[2] - corners[0], w = pixel - corners[0];
-    const double area = u.x * v.y - u.y * v.x;
+    const double area = cross(u, v);
     if (std::fabs(area) < 1e-3) return std::nullopt;
-    const Vec2 at((w.x * v.y - w.y * v.x) / area, (u.x * w.y - u.y * w.x) / area);
+    const Vec2 at(cross(w, v) / area, cross(u, w) / area);
     if (at.x < 0.1 || at.y < 0.1 || at.x + at.y > 0.9) return std::nullopt;
     return at;
+}
+
+/// Where the four pixels from this one on show the target; none where their ways are not one, or usual.
+std::optional<std::array<Vec2, 4>> shown_cell(const Mapped& mapped, const ShotRays& shot, int x, int y) {
+    const int width = mapped.scene.film.width;
+    const auto events = shot.events_of(shot.rays[index_of(x, y, width)]);
+    if (!is_usual(mapped.renderer.world(), events)) return std::nullopt;
+    std::array<Vec2, 4> corners;
+    for (int k = 0; k < 4; ++k) {
+        const ShotRay& ray = shot.rays[index_of(x + k % 2, y + k / 2, width)];
+        const std::optional<Vec2> at = mapped.pixel(ray);
+        if (!at || !mapped.is_free(ray) || !is_same_way(events, shot.events_of(ray)) ||
+            std::max({ray.weight.x, ray.weight.y, ray.weight.z}) <= 1e-3)
+            return std::nullopt;
+        corners[static_cast<std::size_t>(k)] = *at;
+    }
+    const auto [low, high] = std::ranges::minmax(corners, {}, &Vec2::x);
+    if (high.x - low.x > kLargestCell) return std::nullopt;  // a seam, or a fold
+    return corners;
+}
+
+/// Whether a place of the film shows a pixel of the target in this way.
+bool is_shown(const Mapped& mapped, const Vec2& film, const Vec2& pixel, std::span<const PathEvent> way) {
+    const ShotRays there = mapped.renderer.shoot(std::vector<Vec2>{film});
+    const std::optional<Vec2> shown = mapped.pixel(there.rays[0]);
+    return shown && is_same_way(way, there.events_of(there.rays[0])) && length(*shown - pixel) <= kNear;
 }
 
 /// What rays show of the target, in the same way all about, is in its map.
 void require_complete(const Mapped& mapped, const FilmMap& map, const ShotRays& shot) {
     const Film& film = mapped.scene.film;
-    for (int y = 0; y + 1 < film.height; ++y)
-        for (int x = 0; x + 1 < film.width; ++x) {
-            std::array<Vec2, 4> corners;
-            bool is_one = true;
-            const auto events = shot.events_of(shot.rays[index_of(x, y, film.width)]);
-            for (int k = 0; k < 4 && is_one; ++k) {
-                const ShotRay& ray = shot.rays[index_of(x + k % 2, y + k / 2, film.width)];
-                const std::optional<Vec2> at = mapped.pixel(ray);
-                is_one = at && mapped.is_free(ray) && is_usual(mapped.renderer.world(), events) &&
-                         is_same_way(events, shot.events_of(ray)) &&
-                         std::max({ray.weight.x, ray.weight.y, ray.weight.z}) > 1e-3;
-                if (is_one) corners[static_cast<std::size_t>(k)] = *at;
+    const auto require_cell = [&](int x, int y, const std::array<Vec2, 4>& corners) {
+        const auto way = shot.events_of(shot.rays[index_of(x, y, film.width)]);
+        const int left = static_cast<int>(corners[0].x), top = static_cast<int>(corners[0].y);
+        for (int py = std::max(0, top - kLargestCell); py < std::min(map.height, top + kLargestCell); ++py)
+            for (int px = std::max(0, left - kLargestCell); px < std::min(map.width, left + kLargestCell);
+                 ++px) {
+                const std::optional<Vec2> at = place_in_cell(corners, middle_of(px, py));
+                if (!at || map.valid[index_of(px, py, map.width)]) continue;
+                const Vec2 place = middle_of(x, y) + *at;
+                require(!is_shown(mapped, place, middle_of(px, py), way),
+                        fmt::format("an unwrapped map lacks {},{}, which the film shows at {},{}", px, py,
+                                    place.x, place.y));
             }
-            if (!is_one) continue;
-            const auto [low, high] = std::ranges::minmax(corners, {}, &Vec2::x);
-            if (high.x - low.x > 4) continue;  // a seam, or a fold
-            for (int py = static_cast<int>(corners[0].y) - 4; py < corners[0].y + 4; ++py)
-                for (int px = static_cast<int>(corners[0].x) - 4; px < corners[0].x + 4; ++px) {
-                    if (px < 0 || py < 0 || px >= map.width || py >= map.height) continue;
-                    const std::optional<Vec2> at = place_in_cell(corners, middle_of(px, py));
-                    if (!at || map.valid[index_of(px, py, map.width)]) continue;
-                    const ShotRays there = mapped.renderer.shoot(std::vector<Vec2>{middle_of(x, y) + *at});
-                    const std::optional<Vec2> shown = mapped.pixel(there.rays[0]);
-                    require(!shown || !is_same_way(events, there.events_of(there.rays[0])) ||
-                                length(*shown - middle_of(px, py)) > 0.1,
-                            fmt::format("an unwrapped map lacks {},{}, which the film shows at {},{}", px, py,
-                                        x + 0.5 + at->x, y + 0.5 + at->y));
-                }
-        }
+    };
+    for (int y = 0; y + 1 < film.height; ++y)
+        for (int x = 0; x + 1 < film.width; ++x)
+            if (const auto corners = shown_cell(mapped, shot, x, y)) require_cell(x, y, *corners);
 }
 
 /// A photograph that is white everywhere unwraps to white, wherever it is seen.
@@ -219,16 +235,6 @@ void require_white(const Mapped& mapped, const FilmMap& map) {
             "what is unwrapped and its map differ in what is seen");
 }
 
-void require_same_by_threads(const Mapped& mapped, const FilmMapRequest& request, const FilmMap& map) {
-    const int before = thread_count();
-    set_thread_count(before == 1 ? 3 : 1);
-    FilmMap again;
-    answer([&] { again = make_map(mapped.renderer, request); });
-    set_thread_count(before);
-    require(again.valid.empty() || (again.x == map.x && again.y == map.y),
-            "a map depends on the number of threads");
-}
-
 void require_laws(const Mapped& mapped) {
     std::vector<Vec2> middles;
     const Film& film = mapped.scene.film;
@@ -241,15 +247,17 @@ void require_laws(const Mapped& mapped) {
     answer([&] { require_view(mapped, make_map(mapped.renderer, request), shot); });
     request.way = MapWay::kUnwrap;
     FilmMap map;
-    if (answer([&] { map = make_map(mapped.renderer, request); }) == Answer::kRefused) {
+    const auto made = [&] { return make_map(mapped.renderer, request); };
+    if (answer([&] { map = on_threads(1, made); }) == Answer::kRefused) {
         map.width = request.target.width, map.height = request.target.height;
         map.valid.assign(static_cast<std::size_t>(map.width * map.height), 0);
     } else {
+        const FilmMap again = on_threads(3, made);
+        require(again.x == map.x && again.y == map.y, "a map depends on the number of threads");
         require_places(mapped, map);
         require_white(mapped, map);
     }
     require_complete(mapped, map, shot);
-    if (mapped.target.has_directions()) require_same_by_threads(mapped, request, map);
 }
 
 }  // namespace

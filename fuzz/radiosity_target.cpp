@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/util/parallel.h"
 #include "fuzz/random_scene.h"
 #include "fuzz/target.h"
 #include "trilens/image.h"
@@ -86,14 +85,9 @@ Answer random_radiosity(std::string_view bytes) {
     if (random.is_unlit) return Answer::kTaken;
     return answer([&] {
         const Scene scene = small_scene(random.json);
-        const auto baked = [&](int threads) {
-            set_thread_count(threads);
-            return bake_light(Renderer(scene), request);
-        };
-        const int before = thread_count();
-        const Bake one = baked(1);
-        const std::string other = baked(3).scene.resolved;
-        set_thread_count(before);
+        const auto baked = [&] { return bake_light(Renderer(scene), request); };
+        const Bake one = on_threads(1, baked);
+        const std::string other = on_threads(3, baked).scene.resolved;
         require(other == one.scene.resolved, "baked light depends on the number of threads");
         require_balance(one.report.balance);
         require(!one.report.convergence.empty(), "a solver that says nothing");

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/util/error.h"
+#include "base/util/parallel.h"
 
 namespace trilens_fuzz {
 
@@ -56,6 +57,17 @@ Answer answer(Work&& work) {
         last_refusal() = message;
         return Answer::kRefused;
     }
+}
+
+/// What `work` gives on so many threads; what comes after has as many as before.
+template <class Work>
+auto on_threads(int threads, Work&& work) {
+    struct Back {
+        int before = trilens::thread_count();
+        ~Back() { trilens::set_thread_count(before); }
+    } back;
+    trilens::set_thread_count(threads);
+    return work();
 }
 
 Answer scene_text(std::string_view bytes);

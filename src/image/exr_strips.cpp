@@ -156,9 +156,9 @@ ExrStrips::State::~State() {
 }
 
 void ExrStrips::State::require(exr_result_t result) {
+    const std::string told = std::exchange(last_reason(), {});
     if (sink.failed) std::rethrow_exception(sink.failed);
     if (result == EXR_ERR_SUCCESS) return;
-    const std::string told = std::exchange(last_reason(), {});
     const std::string why = told.empty() ? exr_get_default_error_message(result) : told;
     throw OutputError(name, "cannot be encoded: " + library_reason(why));
 }

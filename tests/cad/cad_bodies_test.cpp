@@ -16,6 +16,19 @@
 using namespace trilens;
 using namespace trilens_test;
 
+namespace {
+
+TopoDS_Shape two_boxes() {
+    BRep_Builder builder;
+    TopoDS_Compound both;
+    builder.MakeCompound(both);
+    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 2, 3, 4).Solid());
+    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 3, 4).Solid());
+    return both;
+}
+
+}  // namespace
+
 TEST_CASE("bodies are mirrors, glass and objects by their names", "[cad]") {
     const std::string file = written(BRepPrimAPI_MakeBox(2, 3, 4).Solid(), "box.step");
     std::vector<CadBody> bodies = read_cad_file(file, 1e-3).bodies;
@@ -55,12 +68,7 @@ TEST_CASE("bodies are mirrors, glass and objects by their names", "[cad]") {
 }
 
 TEST_CASE("a STEP file's names, unit and losses are told", "[cad]") {
-    BRep_Builder builder;
-    TopoDS_Compound both;
-    builder.MakeCompound(both);
-    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 2, 3, 4).Solid());
-    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 3, 4).Solid());
-    std::ifstream in(written(both, "both.step"));
+    std::ifstream in(written(two_boxes(), "both.step"));
     std::string text{std::istreambuf_iterator<char>(in), {}};
     for (const std::string name : {"left", "right"}) {
         const std::size_t unnamed = text.find("MANIFOLD_SOLID_BREP(''");
@@ -112,14 +120,9 @@ TEST_CASE("a STEP file's names, unit and losses are told", "[cad]") {
 }
 
 TEST_CASE("bodies of a STEP file without names of their own have their parts'", "[cad]") {
-    BRep_Builder builder;
-    TopoDS_Compound both;
-    builder.MakeCompound(both);
-    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 2, 3, 4).Solid());
-    builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 3, 4).Solid());
     STEPControl_Controller::Init();
     REQUIRE(Interface_Static::SetIVal("write.step.assembly", 1));
-    const std::string file = written(both, "parts.step");
+    const std::string file = written(two_boxes(), "parts.step");
     REQUIRE(Interface_Static::SetIVal("write.step.assembly", 0));
     // The writer's own names of parts are none.
     CHECK(read_cad_file(file, 1e-3).bodies.at(1).name == "body 2");

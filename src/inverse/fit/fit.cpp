@@ -90,10 +90,9 @@ bool fits(const std::string& word, const std::string& asked) {
 }
 
 /// Starts each pair at an image of its point in the scene as it is.
-void match_images(const Scene& scene, std::span<const Correspondence> given, FitMatch match,
+void match_images(const World& world, std::span<const Correspondence> given, FitMatch match,
                   std::vector<FitPair>& pairs) {
-    const std::unique_ptr<World> world = make_world(scene, {});
-    for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
+    for (std::size_t c = 0; c < world.scene.cameras.size(); ++c) {
         std::vector<Vec3> points;
         std::vector<std::size_t> of_pair;
         for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -101,7 +100,7 @@ void match_images(const Scene& scene, std::span<const Correspondence> given, Fit
         if (points.empty()) continue;
         ProjectRequest request;
         request.frame.camera = c;
-        const std::vector<PointProjection> found = project_points(*world, request, points);
+        const std::vector<PointProjection> found = project_points(world, request, points);
         for (std::size_t k = 0; k < points.size(); ++k) {
             FitPair& pair = pairs[of_pair[k]];
             const int wanted = given[of_pair[k]].image;
@@ -288,13 +287,13 @@ bool all_lost(std::vector<FitPair>& pairs) {
 }
 
 /// Paths are followed from cameras in air: from within glass they would be others.
-void require_cameras_in_air(const Scene& scene, std::span<const FitPair> pairs) {
-    const std::unique_ptr<World> world = make_world(scene, {});
+void require_cameras_in_air(const World& world, std::span<const FitPair> pairs) {
+    const Scene& scene = world.scene;
     for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
         const auto is_of_camera = [c](const FitPair& pair) { return pair.camera == c; };
         if (std::ranges::none_of(pairs, is_of_camera)) continue;
         const CameraRays rays = make_camera_rays(scene, c);
-        const CameraMedia media = camera_media_of(*world, rays);
+        const CameraMedia media = camera_media_of(world, rays);
         if (media.none()) continue;
         for (const FitPair& pair : pairs) {
             const std::optional<Ray> ray = is_of_camera(pair) ? exact_ray(rays, pair.pixel) : std::nullopt;
@@ -315,7 +314,8 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     if (request.free.empty()) throw UsageError("a fit needs something that is free");
     if (!(request.sigma > 0) || !(request.huber > 0)) throw UsageError("sigma and huber are above 0");
     std::vector<FitPair> pairs = prepare_pairs(scene, given, request);
-    require_cameras_in_air(scene, pairs);
+    const std::unique_ptr<World> world = make_world(scene, {});
+    require_cameras_in_air(*world, pairs);
     Json document = resolved_json(scene);
     const std::vector<FitParameter> parameters =
         find_parameters(document, request.free, file, extent_of(scene, pairs));
@@ -345,7 +345,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
         result.iterations += minimise(problem.least_squares(), rough).iterations;
         problem.linearise();  // guesses and events of the end
     } else {
-        match_images(scene, given, request.match, problem.pairs());
+        match_images(*world, given, request.match, problem.pairs());
     }
 
     problem.residual = FitResidual::kImage;
