@@ -1,7 +1,8 @@
 // Random inputs for one target, by any compiler and without a look at coverage: for laws, whose scenes differ
-// in every byte, the fastest way to many of them. hunt TARGET SECONDS [SEED]: fails with the first seeds that
-// break it. hunt TARGET FILE: those bytes alone. hunt scene FILE [FACTOR]: prints the scene that they are for
-// the target laws, enlarged.
+// in every byte, the fastest way to many of them. hunt TARGET SECONDS [SEED [FOLDER]]: random bytes, or with
+// a FOLDER its files changed at random; fails with the first seeds that break it. hunt TARGET FILE: those
+// bytes alone. hunt show FILE [FACTOR]: prints the scene that they are for the target laws, enlarged. hunt
+// list: names of the targets, and whether bytes, or files changed, are their inputs.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -12,8 +13,10 @@
 #include <iterator>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "base/util/error.h"
+#include "fuzz/havoc.h"
 #include "fuzz/random_scene.h"
 #include "fuzz/target.h"
 
@@ -64,9 +67,19 @@ std::string random_bytes(std::uint64_t seed) {
     return bytes;
 }
 
-std::string bytes_of(const char* file) {
+std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// In the order of their names.
+std::vector<std::string> files_of(const char* folder) {
+    std::vector<std::filesystem::path> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end());
+    std::vector<std::string> files;
+    for (const auto& path : paths) files.push_back(bytes_of(path));
+    return files;
 }
 
 std::uint64_t number(const char* text) {
@@ -78,14 +91,21 @@ std::uint64_t number(const char* text) {
 }  // namespace
 
 int main(int count_of_words, char** words) {
-    if (count_of_words > 2 && std::strcmp(words[1], "scene") == 0) {
+    if (count_of_words == 2 && std::strcmp(words[1], "list") == 0) {
+        for (const FuzzTarget& one : fuzz_targets())
+            std::printf("%s %s\n", std::string(one.name).c_str(), one.makes ? "bytes" : "files");
+        return 0;
+    }
+    if (count_of_words > 2 && std::strcmp(words[1], "show") == 0) {
         const double factor = count_of_words > 3 ? static_cast<double>(number(words[3])) : 1;
         std::puts(make_random_scene(bytes_of(words[2]), factor).json.c_str());
         return 0;
     }
     const FuzzTarget* target = count_of_words > 2 ? find_target(words[1]) : nullptr;
     if (target == nullptr) {
-        std::fprintf(stderr, "hunt TARGET SECONDS [SEED] | hunt TARGET FILE | hunt scene FILE [FACTOR]\n");
+        std::fprintf(stderr,
+                     "hunt TARGET SECONDS [SEED [FOLDER]] | hunt TARGET FILE | hunt show FILE [FACTOR] | "
+                     "hunt list\n");
         return 2;
     }
     if (std::filesystem::is_regular_file(words[2])) {
@@ -98,13 +118,15 @@ int main(int count_of_words, char** words) {
         return message.empty() ? 0 : 1;
     }
     const std::uint64_t first = count_of_words > 3 ? number(words[3]) : 0;
+    const std::vector<std::string> files =
+        count_of_words > 4 ? files_of(words[4]) : std::vector<std::string>{};
     const auto seconds = static_cast<double>(number(words[2]));
     const trilens::Stopwatch watch;
     std::size_t refused = 0, defects = 0;
     std::uint64_t seed = first, slowest = first;
     double longest = 0;
     for (; watch.seconds() < seconds; ++seed) {
-        const std::string bytes = random_bytes(seed);
+        const std::string bytes = files.empty() ? random_bytes(seed) : changed_file(files, seed);
         Answer answer = Answer::kTaken;
         const double began = watch.seconds();
         const std::string message = broken(*target, bytes, answer);

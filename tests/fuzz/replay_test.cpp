@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "fuzz/havoc.h"
 #include "fuzz/target.h"
 #include "support/test.h"
 
@@ -112,4 +114,24 @@ TEST_CASE("seeds that are to be refused are refused for what is wrong with them,
             CHECK(last_refusal().find(seed->reason) != std::string::npos);
         }
     CHECK(met == refused_seeds().size());
+}
+
+TEST_CASE("a file changed at random is the same for the same seed, and nearly always another", "[fuzz]") {
+    const std::vector<std::string> files{bytes_of(fs::path(trilens_test::source_dir()) / "scenes/sphere.json"),
+                                         "v 0 0 0\nf 1 2 3\n", ""};
+    std::set<std::string> met;
+    for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+        const std::string one = changed_file(files, seed);
+        CHECK(one == changed_file(files, seed));
+        CHECK(one.size() <= kLongestChanged);
+        met.insert(one);
+    }
+    CHECK(met.size() > 700);
+    // What is longer to begin with stays, but for its end.
+    const std::vector<std::string> longer{std::string(3 * kLongestChanged, 'x')};
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const std::string one = changed_file(longer, seed);
+        CHECK(one.size() <= longer[0].size());
+        CHECK(one.size() > 2 * kLongestChanged);
+    }
 }
