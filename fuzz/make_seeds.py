@@ -307,6 +307,8 @@ def random_bytes():
         write("maps", f"random{seed:02}", random.Random(400 + seed).randbytes(160))
         write("radiosity", f"random{seed:02}", random.Random(300 + seed).randbytes(160))
         write("terrain", f"random{seed:02}", random.Random(200 + seed).randbytes(400))
+    for seed in range(6):
+        write("suite", f"random{seed:02}", random.Random(600 + seed).randbytes(165))
     for seed in (3, 11, 12, 13, 17, 19, 21, 22):  # that see enough of their objects
         write("fit", f"random{seed:02}", random.Random(500 + seed).randbytes(200))
 

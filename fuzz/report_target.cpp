@@ -3,8 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "fuzz/target.h"
 #include "trilens/scene.h"
@@ -15,11 +13,6 @@ namespace fs = std::filesystem;
 
 namespace trilens_fuzz {
 namespace {
-
-std::string text_of(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// The parts between line ends, at most `count` of them.
 template <std::size_t count>
@@ -59,12 +52,12 @@ Answer sweep_report(std::string_view bytes) {
         request.command = kMark + names[3];
         const SweepSummary made = run_sweep(request);
         require(made.runs.size() == 2, "a sweep of two pictures has not two");
-        const std::string table = text_of(request.folder + "/runs.csv");
-        require_escaped(text_of(request.folder + "/report.html"));
+        const std::string table = file_text(request.folder + "/runs.csv");
+        require_escaped(file_text(request.folder + "/report.html"));
         const SweepSummary read = report_sweep(request.folder);
         require(read.runs.size() == made.runs.size(), "a sweep's folder reads back as another");
-        require(text_of(request.folder + "/runs.csv") == table, "a table is another once it is read");
-        require_escaped(text_of(request.folder + "/report.html"));
+        require(file_text(request.folder + "/runs.csv") == table, "a table is another once it is read");
+        require_escaped(file_text(request.folder + "/report.html"));
     });
 }
 

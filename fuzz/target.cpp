@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 namespace fs = std::filesystem;
 
@@ -32,6 +33,7 @@ constexpr std::array kTargets{
     FuzzTarget{"report", "names, put into a sweep's report", sweep_report, true},
     FuzzTarget{"run", "a sweep's folder: manifest, plan, a run", run_folder},
     FuzzTarget{"scene", "a scene file", scene_text},
+    FuzzTarget{"suite", "random scenes as regression tests", random_suite, true},
     FuzzTarget{"sweep", "a sweep file", sweep_file},
     FuzzTarget{"terrain", "random heights, as triangles", random_terrain, true},
     FuzzTarget{"test", "a regression test's test.json", test_file},
@@ -89,6 +91,11 @@ std::string put_file(const std::string& name, std::string_view bytes) {
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     require(out.good(), "the fuzzer cannot write " + file.string());
     return file.string();
+}
+
+std::string file_text(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace trilens_fuzz

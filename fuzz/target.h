@@ -92,6 +92,7 @@ Answer random_fit(std::string_view bytes);
 Answer random_maps(std::string_view bytes);
 Answer random_terrain(std::string_view bytes);
 Answer random_radiosity(std::string_view bytes);
+Answer random_suite(std::string_view bytes);
 Answer sweep_report(std::string_view bytes);
 
 /// The JSON of two mirror balls before a wall, 8 x 6 pixels.
@@ -102,5 +103,8 @@ const std::string& fuzz_folder();
 
 /// Writes the bytes there under that name; returns the path.
 std::string put_file(const std::string& name, std::string_view bytes);
+
+/// What is in the file; empty where it cannot be read.
+std::string file_text(const std::string& file);
 
 }  // namespace trilens_fuzz

@@ -2,7 +2,7 @@
 
 # Of bytes that scenes are made of, a few hundred are a scene.
 longest_of() {  # TARGET
-    case $1 in laws | caustics | fit | maps | radiosity | terrain) echo 400 ;; *) echo 8192 ;; esac
+    case $1 in laws | caustics | fit | maps | radiosity | suite | terrain) echo 400 ;; *) echo 8192 ;; esac
 }
 
 # Whether its inputs are JSON, so that the schema's words are its dictionary.
