@@ -111,7 +111,7 @@ class Checker {
 
     Found check_enum(const Json& value, const Json& choices, const Path& path) const {
         if (std::find(choices.begin(), choices.end(), value) != choices.end()) return {};
-        if (!value.is_string())
+        if (!value.is_string() || !choices.at(0).is_string())
             return problem(path, "expected " + quoted_list(choices, "or") + ", found " + describe(value));
         const std::vector<std::string> known = choices.get<std::vector<std::string>>();
         return problem(path, "unknown value '" + value.get<std::string>() + "'" +

@@ -37,15 +37,16 @@ TEST_CASE("bad glTF scenes: the file, the place and one message", "[scene][bad-i
          ": /nodes/2: is a child of node 0 and of node 1: nodes must form a tree"},
         {with([](GltfParts& p) { p.roots = "[0,0]"; }),
          ": /scenes/0: node 0 is reached twice: nodes must form a tree"},
-        {with([](GltfParts& p) { p.roots = "[5]"; }), ": /scenes/0: node 5 is out of range: there are 1"},
+        {with([](GltfParts& p) { p.roots = "[5]"; }),
+         ": /scenes/0/nodes/0: 5 is out of range: there are 1 nodes"},
         {with([](GltfParts& p) { p.nodes = R"([{"mesh":0,"skin":0}])"; }),
-         ": /nodes/0: skin 0 is out of range: there are 0"},
+         ": /nodes/0/skin: 0 is out of range: there are 0 skins"},
         {with([](GltfParts& p) { p.nodes = R"([{"camera":3}])"; }),
-         ": /nodes/0: camera 3 is out of range: there are 0"},
+         ": /nodes/0/camera: 3 is out of range: there are 0 cameras"},
         {with([](GltfParts& p) {
              p.nodes = R"([{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":2}}}])";
          }),
-         ": /nodes/0: light 2 is out of range: there are 0"},
+         ": /nodes/0/extensions/KHR_lights_punctual/light: 2 is out of range: there are 0 lights"},
         {with([](GltfParts& p) { p.nodes = R"([{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]}])"; }),
          ": /nodes/0: the last row of matrix must be 0 0 0 1"},
         {with([](GltfParts& p) { p.nodes = R"([{"mesh":0,"translation":[1e31,0,0]}])"; }),
@@ -59,11 +60,11 @@ TEST_CASE("bad glTF scenes: the file, the place and one message", "[scene][bad-i
              p.materials = R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
              p.more = R"(,"textures":[{"source":0}],"images":[{"bufferView":99,"mimeType":"image/png"}])";
          }),
-         ": not a readable glTF file: image[0] bufferView \"99\" not found in the scene."},
+         ": /images/0/bufferView: 99 is out of range: there are 11 bufferViews"},
         {with([](GltfParts& p) { p.materials = R"([{"extensions":{"KHR_materials_ior":{"ior":-1}}}])"; }),
          ": /materials/0/extensions/KHR_materials_ior/ior: the number -1 is no number in 0..1e+30"},
         {with([](GltfParts& p) { p.materials = R"([{"alphaMode":"SOFT"}])"; }),
-         ": /materials/0/alphaMode: is neither OPAQUE, MASK nor BLEND"},
+         ": /materials/0/alphaMode: unknown value 'SOFT'; known: OPAQUE, MASK, BLEND"},
         {with([](GltfParts& p) { p.nodes = R"([{"mesh":0,"extras":{"trilens":3}}])"; }),
          ": /nodes/0/extras/trilens: is neither true, false nor an object of a mesh's keys, but the number "
          "3"},
@@ -76,11 +77,12 @@ TEST_CASE("bad glTF scenes: the file, the place and one message", "[scene][bad-i
         {animation("6", "7", "1", "0"),
          ": /animations/0/channels/0/sampler: sampler 1 is out of range: there are 1"},
         {animation("6", "7", "0", "9"),
-         ": /animations/0/channels/0/target: node 9 is out of range: there are 1"},
+         ": /animations/0/channels/0/target/node: 9 is out of range: there are 1 nodes"},
         {animation("7", "7", "0", "0"), ": /accessors/7: must have entries of 1 components"},
         {animation("6", "0", "0", "0"),
          ": /animations/0/samplers/0/output: has 12 numbers, but its times need 6"},
-        {animation("8", "99", "0", "0"), ": /accessors/99: is out of range: there are 11 accessors"},
+        {animation("8", "99", "0", "0"),
+         ": /animations/0/samplers/0/output: 99 is out of range: there are 11 accessors"},
     };
     for (const Bad& bad : all) {
         INFO(bad.message);
@@ -251,5 +253,5 @@ TEST_CASE("every glTF of assimp's test models is a scene or says why not", "[sce
         ++(error.empty() ? loaded : refused);
     }
     INFO(loaded << " loaded, " << refused << " refused");
-    CHECK(loaded >= 25);
+    CHECK(loaded >= 23);
 }

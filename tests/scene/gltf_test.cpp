@@ -119,7 +119,7 @@ TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones kee
     CHECK(read_error(write_square(folder, gltf_text(square))) == ": /nodes/0: rotation must not be zero");
     square.nodes = R"([{"mesh":1}])";
     CHECK(read_error(write_square(folder, gltf_text(square))) ==
-          ": /nodes/0: mesh 1 is out of range: there are 1");
+          ": /nodes/0/mesh: 1 is out of range: there are 1 meshes");
 }
 
 TEST_CASE("glTF accessors: sparse or normalised or out of bounds", "[scene]") {
@@ -291,7 +291,7 @@ TEST_CASE("glTF materials and their pictures", "[scene]") {
     CHECK(bytes == 8);
 
     square.more =
-        R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
+        R"(,"materials":[{}],"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
     CHECK(read_error(write_square(folder, gltf_text(square))) ==
           ": /extensionsRequired: the extension 'KHR_draco_mesh_compression' is required but not supported");
 }

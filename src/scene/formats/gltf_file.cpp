@@ -19,6 +19,7 @@
 #include "base/util/error.h"
 #include "json/json.h"
 #include "scene/data/polygons.h"
+#include "scene/formats/gltf_parts.h"
 
 namespace trilens {
 namespace {
@@ -158,11 +159,36 @@ std::optional<tinygltf::Model> read_model(const std::string& file, std::string_v
     return std::nullopt;
 }
 
+/// Throws InputError for another than 2.0, and for a file that asks for more.
+void check_version(const Json& json, const std::string& file) {
+    const auto says = [&](const char* key, const char* otherwise) {
+        const Json::json_pointer place(key);
+        if (!json.contains(place)) return std::string(otherwise);
+        const Json& version = json.at(place);
+        if (version.is_number()) return version.dump();
+        return version.is_string() ? version.get<std::string>() : std::string(otherwise);
+    };
+    const std::string version = says("/asset/version", "2.0"), least = says("/asset/minVersion", "2.0");
+    if (!version.starts_with("2."))
+        fail_at(file, "/asset/version", "glTF '" + version + "' is not supported, 2.0 is");
+    if (least != "2.0" && !least.starts_with("1."))
+        fail_at(file, "/asset/minVersion", "glTF '" + least + "' is needed, which is not supported: 2.0 is");
+}
+
+/// What is no JSON is left to the library, which says where.
+void check_json(const std::string& file, std::string_view bytes) {
+    const Json json = Json::parse(text_of(bytes).json, nullptr, false);
+    if (json.is_discarded()) return;
+    check_version(json, file);
+    check_gltf_keys(json, file);
+}
+
 }  // namespace
 
 tinygltf::Model load_gltf_model(const std::string& file) {
     const std::string whole = read_required_file(file);
     const std::string_view bytes = utf8_text(whole, file);
+    check_json(file, bytes);
     std::string reason;
     std::optional<tinygltf::Model> model = read_model(file, bytes, reason);
     if (!model) {
@@ -171,9 +197,6 @@ tinygltf::Model load_gltf_model(const std::string& file) {
         if (!model) fail(file, bytes, reason);
         for (const auto& [buffer, size] : longer.cut) model->buffers[buffer].data.resize(size);
     }
-    if (model->asset.version.rfind("2.", 0) != 0)
-        throw InputError(file, "/asset/version",
-                         "glTF '" + one_line(model->asset.version) + "' is not supported, 2.0 is");
     return std::move(*model);
 }
 

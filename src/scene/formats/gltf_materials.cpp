@@ -61,13 +61,8 @@ class MaterialReader {
 
     void read_base() {
         const tinygltf::PbrMetallicRoughness& pbr = in_.pbrMetallicRoughness;
-        if (pbr.baseColorFactor.size() < 3) source_.fail(place_, "baseColorFactor must have 4 numbers");
-        for (int k = 0; k < 3; ++k) {
-            const double value = pbr.baseColorFactor[static_cast<std::size_t>(k)];
-            if (!(value >= 0 && value <= kLargestCoordinate))
-                source_.fail(place_, "baseColorFactor is no colour");
-            out_.material.base_color_factor[k] = value;
-        }
+        for (int k = 0; k < 3; ++k)
+            out_.material.base_color_factor[k] = pbr.baseColorFactor[static_cast<std::size_t>(k)];
         write("baseColorFactor", out_.material.base_color_factor);
         Json texture = read_texture(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture");
         if (!texture.is_null()) {
@@ -80,8 +75,8 @@ class MaterialReader {
 
     void read_metal() {
         const tinygltf::PbrMetallicRoughness& pbr = in_.pbrMetallicRoughness;
-        out_.material.metallic_factor = factor(pbr.metallicFactor);
-        out_.material.roughness_factor = factor(pbr.roughnessFactor);
+        out_.material.metallic_factor = pbr.metallicFactor;
+        out_.material.roughness_factor = pbr.roughnessFactor;
         // Unlit is its colour alone.
         if (out_.material.unlit) return;
         out_.written["metallicFactor"] = out_.material.metallic_factor;
@@ -101,19 +96,10 @@ class MaterialReader {
             if (specular.contains(key)) out_.written[key] = true;
     }
 
-    double factor(double value) const {
-        if (!(value >= 0 && value <= 1))
-            source_.fail(place_, "metallicFactor and roughnessFactor must lie in 0..1");
-        return value;
-    }
-
     void read_light() {
         Vec3 emissive(0);
         for (std::size_t k = 0; k < 3 && k < in_.emissiveFactor.size(); ++k)
             emissive[static_cast<int>(k)] = in_.emissiveFactor[k];
-        for (int k = 0; k < 3; ++k)
-            if (!(emissive[k] >= 0 && emissive[k] <= kLargestCoordinate))
-                source_.fail(at("emissiveFactor"), "is no colour");
         if (emissive == Vec3(0) || out_.material.unlit) return;
         write("emissiveFactor", emissive);
         add_texture("emissiveTexture", in_.emissiveTexture, "emissiveTexture");
@@ -125,19 +111,11 @@ class MaterialReader {
 
     void read_coverage() {
         if (in_.alphaMode.empty() || in_.alphaMode == "OPAQUE") return;
-        if (in_.alphaMode != "MASK" && in_.alphaMode != "BLEND")
-            source_.fail(at("alphaMode"), "is neither OPAQUE, MASK nor BLEND");
         out_.written["alphaMode"] = in_.alphaMode == "MASK" ? "mask" : "blend";
         const std::vector<double>& factors = in_.pbrMetallicRoughness.baseColorFactor;
-        if (factors.size() > 3) {
-            if (!(factors[3] >= 0 && factors[3] <= 1))
-                source_.fail(place_, "the alpha of baseColorFactor is not in 0..1");
-            if (factors[3] != 1) out_.written["alphaFactor"] = factors[3];
-        }
+        if (factors[3] != 1) out_.written["alphaFactor"] = factors[3];
         if (in_.alphaMode == "BLEND" && !in_.doubleSided) out_.written["doubleSided"] = false;
         if (in_.alphaMode != "MASK") return;
-        if (!(in_.alphaCutoff >= 0 && in_.alphaCutoff <= kLargestCoordinate))
-            source_.fail(at("alphaCutoff"), "is negative");
         out_.written["alphaCutoff"] = std::min(in_.alphaCutoff, 2.0);  // beyond 1 all is cut away
     }
 
@@ -205,7 +183,6 @@ class MaterialReader {
         Json written{{"image", image}};
         TextureSampler sampler;
         read_sampler(in.sampler, sampler, written);
-        if (info.texCoord < 0) source_.fail(at(key), "texCoord is negative");
         int set = info.texCoord;
         const auto transform = info.extensions.find("KHR_texture_transform");
         if (transform != info.extensions.end())

@@ -42,6 +42,10 @@ Json json_of_gltf(const tinygltf::Value& value);
 double gltf_number(const GltfSource& source, const Json& number, double low, double high,
                    const std::string& place);
 
+/// Every key that is read: its type, and its range where the other readers do not look at that. An index must
+/// be that of an entry. Throws InputError with the key's place.
+void check_gltf_keys(const Json& json, const std::string& file);
+
 /// Warns of extensions that are not known. Throws InputError where the file requires one.
 void check_gltf_extensions(GltfSource& source);
 
