@@ -96,6 +96,41 @@ TEST_CASE("what ends on an object is in its map, whatever its planes and the map
     }
 }
 
+TEST_CASE("a map has the light of its object's front, however the texture coordinates are turned over",
+          "[laws][law][caustics]") {
+    const ObjectMesh plain = reliefs()[0].object;
+    ObjectMesh mirrored = plain, half = plain;
+    for (std::size_t t = 0; t < plain.uvs.size(); ++t) {
+        const bool is_left = plain.points[plain.triangles[t][0]].x + plain.points[plain.triangles[t][1]].x +
+                                 plain.points[plain.triangles[t][2]].x <
+                             0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            mirrored.uvs[t][k].x = 1 - plain.uvs[t][k].x;
+            if (is_left) half.uvs[t][k].x = 0.5 - plain.uvs[t][k].x;
+        }
+    }
+    const auto map_of = [&](const ObjectMesh& object, bool back) {
+        CausticMapRequest request;
+        request.target.kind = TargetKind::kObject;
+        request.target.object = 0;
+        request.target.width = 16, request.target.height = 8;
+        request.back = back;
+        return make_caustic_map(*lit_relief(object), request);
+    };
+    const CausticMap of_plain = map_of(plain, false), of_mirrored = map_of(mirrored, false),
+                     of_half = map_of(half, false);
+    REQUIRE(of_plain.flux_received.y > 1);
+    for (std::size_t y = 0; y < 8; ++y)
+        for (std::size_t x = 0; x < 16; ++x) {
+            const double light = of_plain.irradiance[16 * y + x].y;
+            CHECK(of_mirrored.irradiance[16 * y + 15 - x].y ==
+                  Approx(light).margin(1e-6 * of_plain.flux_received.y));
+            CHECK(of_half.irradiance[16 * y + (x < 8 ? 7 - x : x)].y ==
+                  Approx(light).margin(1e-6 * of_plain.flux_received.y));
+        }
+    for (const ObjectMesh& one : {plain, mirrored, half}) CHECK(map_of(one, true).flux_received.y == 0);
+}
+
 TEST_CASE("what ends on an object smaller than a beam is what its map receives", "[laws][law][caustics]") {
     for (const double half : {0.001, 0.006, 0.03, 0.12}) {
         ObjectMesh card = relief(1, [](double, double) { return 0; });

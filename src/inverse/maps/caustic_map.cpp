@@ -43,9 +43,7 @@ CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, con
     CausticPixel found;
     for (const TargetPiece& piece : target.pieces(pixel)) {
         const TargetPlace& place = piece.at_middle;
-        // Rows go downward, so the front's normal is dy x dx.
-        Vec3 normal = normalize_or_zero(cross(place.dy, place.dx));
-        if (request.back) normal = -normal;
+        const Vec3 normal = request.back ? -piece.normal : piece.normal;
         Receiver receiver{place.at, normal, normal, place.at + params.lift * normal, {place.dx, place.dy}};
         receiver.keeps_sides = true;
         if (target.rectangle())

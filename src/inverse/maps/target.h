@@ -77,6 +77,7 @@ struct TargetPlace {
 /// A flat part of what a pixel shows of a target's plane or object.
 struct TargetPiece {
     TargetPlace at_middle;      // where the pixel's middle would lie in the part's plane
+    Vec3 normal{0};             // of its front, around which its corners lie counterclockwise; unit length
     std::vector<Vec2> outline;  // convex, in pixels from the middle, counterclockwise as x is to y
     double share = 1;           // of the pixel's area
 };

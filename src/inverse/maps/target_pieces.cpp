@@ -36,10 +36,16 @@ Vec2 middle_of(const std::vector<Vec2>& outline) {
     return sum / static_cast<double>(outline.size());
 }
 
+Vec3 front_of(const ObjectMesh& object, Id triangle) {
+    const IdTriple& corner = object.triangles[triangle];
+    const Vec3& p = object.points[corner[0]];
+    return normalize_or_zero(cross(object.points[corner[1]] - p, object.points[corner[2]] - p));
+}
+
 }  // namespace
 
 std::vector<TargetPiece> Target::pieces(const Vec2& pixel) const {
-    if (rectangle_) return {{*place(pixel), kWholePixel, 1}};
+    if (rectangle_) return {{*place(pixel), rectangle_->normal(), kWholePixel, 1}};
     std::vector<TargetPiece> pieces;
     for (const Id t : triangles_around(pixel)) {
         const std::optional<TargetPlace> at_middle = place_on(t, pixel, false);
@@ -57,7 +63,7 @@ std::vector<TargetPiece> Target::pieces(const Vec2& pixel) const {
         const Vec2 middle = middle_of(outline);
         const auto lies_here = [&](const TargetPiece& other) { return holds(other.outline, middle); };
         if (std::none_of(pieces.begin(), pieces.end(), lies_here))
-            pieces.push_back({*at_middle, std::move(outline), share});
+            pieces.push_back({*at_middle, front_of(*object_, t), std::move(outline), share});
     }
     return pieces;
 }
