@@ -10,7 +10,6 @@
 #include "base/util/names.h"
 #include "inverse/fit/fit_problem.h"
 #include "inverse/solve/least_squares.h"
-#include "render/frame/camera_rays.h"
 #include "render/project/project.h"
 #include "render/world/world.h"
 #include "scene/read/override.h"
@@ -286,24 +285,6 @@ bool all_lost(std::vector<FitPair>& pairs) {
     return std::all_of(pairs.begin(), pairs.end(), [](const FitPair& pair) { return pair.is_lost; });
 }
 
-/// Paths are followed from cameras in air: from within glass they would be others.
-void require_cameras_in_air(const World& world, std::span<const FitPair> pairs) {
-    const Scene& scene = world.scene;
-    for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
-        const auto is_of_camera = [c](const FitPair& pair) { return pair.camera == c; };
-        if (std::ranges::none_of(pairs, is_of_camera)) continue;
-        const CameraRays rays = make_camera_rays(scene, c);
-        const CameraMedia media = camera_media_of(world, rays);
-        if (media.none()) continue;
-        for (const FitPair& pair : pairs) {
-            const std::optional<Ray> ray = is_of_camera(pair) ? exact_ray(rays, pair.pixel) : std::nullopt;
-            if (ray && media.of(*ray).count > 0)
-                throw InputError(scene_title(scene), fmt::format("/cameras/{}", c),
-                                 "stands in glass: a fit takes its cameras to stand in air");
-        }
-    }
-}
-
 }  // namespace
 
 FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, const FitRequest& request,
@@ -314,8 +295,6 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     if (request.free.empty()) throw UsageError("a fit needs something that is free");
     if (!(request.sigma > 0) || !(request.huber > 0)) throw UsageError("sigma and huber are above 0");
     std::vector<FitPair> pairs = prepare_pairs(scene, given, request);
-    const std::unique_ptr<World> world = make_world(scene, {});
-    require_cameras_in_air(*world, pairs);
     Json document = resolved_json(scene);
     const std::vector<FitParameter> parameters =
         find_parameters(document, request.free, file, extent_of(scene, pairs));
@@ -330,6 +309,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     problem.huber = request.huber;
     problem.finds_paths = request.match != FitMatch::kId;
     problem.progress = &progress;
+    const std::vector<Media> began = media_of_pairs(problem.scene(), problem.pairs());
     FitResult result;
     LeastSquaresParams params;
     params.most_iterations = request.most_iterations;
@@ -345,7 +325,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
         result.iterations += minimise(problem.least_squares(), rough).iterations;
         problem.linearise();  // guesses and events of the end
     } else {
-        match_images(*world, given, request.match, problem.pairs());
+        match_images(*make_world(scene, {}), given, request.match, problem.pairs());
     }
 
     problem.residual = FitResidual::kImage;
@@ -367,6 +347,8 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     tell_pairs(problem, last, request.huber, result);
     result.rms = rms_of(problem.pairs(), last.residuals);
     warn_of_pairs(request.huber, result);
+    for (std::string& warning : media_warnings(scene, problem, began))
+        result.warnings.push_back(std::move(warning));
     tell_changes(problem, result);
     result.document = problem.document().dump(2) + "\n";
     return result;

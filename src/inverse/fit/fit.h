@@ -97,19 +97,21 @@ struct FitResult {
     std::size_t rank = 0;                           // below the number of parameters: see undetermined
     std::vector<std::string> undetermined;          // motions that no pair tells of, in words
     std::vector<std::vector<double>> null_vectors;  // the same: unit vectors of parameters in large steps
-    std::vector<std::string> warnings;              // of correlated parameters, of pairs, of a rms that rose
+    std::vector<std::string> warnings;  // of correlated parameters, pairs, cameras, a rms that rose
     std::vector<SceneOverride> changes;             // what carries the scene's JSON to the fitted one
     std::string document;                           // the fitted scene's JSON
 };
 
 /// The parameters for which the images of all points lie nearest to their pixels, by Levenberg and Marquardt
-/// with Huber's loss: first along the pixels' rays, then by the exact images. Objects hide nothing, cameras
-/// stand in air, and glass has its `ior` for every colour. The same result for any number of threads.
+/// with Huber's loss: first along the pixels' rays, then by the exact images. Objects hide nothing, and glass
+/// has its `ior` for every colour. What cameras stand in is asked anew at each step, as pictures have it; the
+/// exact images of the second part keep theirs, or are lost, and a camera that ends in other glass than it
+/// began in is warned of. The same result for any number of threads.
 ///
 /// Throws InputError for pointers that name no number, a scene without JSON (Scene::resolved), pairs that are
-/// too few or not finite, cameras that stand in glass, or whose rays have no common eye and are not parallel;
-/// UsageError for cameras and paths that there are not, and pairs without the image that FitMatch::kId asks
-/// for (InputError with the place of pairs that have one); ComputationError where every pair is lost.
+/// too few or not finite, cameras whose rays have no common eye and are not parallel; UsageError for cameras
+/// and paths that there are not, and pairs without the image that FitMatch::kId asks for (InputError with the
+/// place of pairs that have one); ComputationError where every pair is lost.
 FitResult fit_scene(const Scene& scene, std::span<const Correspondence> pairs, const FitRequest& request,
                     const Progress& progress = {});
 

@@ -33,12 +33,14 @@ bool knows_path(const FitPair& pair) {
     return pair.events > 0 || pair.word == "D";
 }
 
-/// Whether a ray's path begins with the pair's: the same optics, each reflecting or transmitting as before.
+/// Whether a ray's path begins with the pair's: the same optics, each reflecting or transmitting as before,
+/// between the same media.
 bool keeps_path(const ShotPath& path, const FitPair& pair) {
     if (path.events.size() < pair.events) return false;
     return std::equal(pair.path.begin(), pair.path.end(), path.events.begin(),
                       [](const OpticEvent& was, const OpticEvent& is) {
-                          return was.optic == is.optic && was.reflects == is.reflects;
+                          return was.optic == is.optic && was.reflects == is.reflects &&
+                                 was.before == is.before && was.after == is.after;
                       });
 }
 
@@ -79,6 +81,7 @@ bool FitProblem::move(std::span<const double> step, Json& document, FitScene& sc
     } catch (const InputError&) {
         return false;  // a camera at what it looks at, a flat mesh: the step is too long
     }
+    ask_media(scene);
     return true;
 }
 
@@ -101,7 +104,7 @@ std::vector<ParameterDifference> FitProblem::differences() const {
 
 std::optional<ShotPath> FitProblem::shoot(const FitScene& scene, const FitPair& pair,
                                           const Vec2& pixel) const {
-    return shoot_path(scene, scene.cameras[pair.camera], pixel, pair.word);
+    return shoot_path(scene, pair.camera, pixel, pair.word);
 }
 
 /// Newton's method on the film: the ray through a place, and how its image of the point moves from there.

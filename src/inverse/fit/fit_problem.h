@@ -17,6 +17,7 @@
 #include "inverse/fit/fit.h"
 #include "inverse/solve/least_squares.h"
 #include "json/json.h"
+#include "render/frame/camera_rays.h"
 #include "scene/data/polygons.h"
 #include "scene/data/scene.h"
 
@@ -69,6 +70,7 @@ struct FitOptic {
     double ior = 1;
     std::shared_ptr<const Surface> surface;     // as built
     std::shared_ptr<const LimitTracer> tracer;  // of it; null where only its parameters are asked for
+    std::shared_ptr<const std::vector<Vec3>> outline;  // of glass that has a tracer, see outline_of
     Transform built;                            // the mesh's transform when it was built
     Transform moved, unmoved;                   // from there to where it is now, and back
     bool is_moved = false;
@@ -78,7 +80,14 @@ struct FitOptic {
 struct FitScene {
     std::vector<Camera> cameras;
     std::vector<FitOptic> optics;
+    std::vector<CameraMedia> media;  // per camera what its rays start in; see ask_media
 };
+
+/// Sets what the cameras' rays start in, as pictures of the scene have it: of the optics, which have tracers.
+void ask_media(FitScene& scene);
+
+/// The ray as the optic's surface, as built, meets it at the same t.
+Ray unmoved_ray(const FitOptic& optic, const Ray& ray);
 
 /// Position and derivatives as the moved surface has them, of those as built.
 SurfacePoint moved_point(const FitOptic& optic, const SurfacePoint& as_built);
@@ -143,9 +152,9 @@ struct ShotPath {
 double index_of(const FitScene& scene, Id medium);
 
 /// The path of the ray through `pixel` that the word describes; with an empty word the one that mirrors
-/// reflect and glass transmits, or reflects totally, to its end. The camera stands in air. None where the
-/// camera has no ray there, or where the ray does not meet what the word says.
-std::optional<ShotPath> shoot_path(const FitScene& scene, const Camera& camera, const Vec2& pixel,
+/// reflect and glass transmits, or reflects totally, to its end. It begins in the camera's media. None where
+/// the camera has no ray there, or where the ray does not meet what the word says.
+std::optional<ShotPath> shoot_path(const FitScene& scene, std::size_t camera, const Vec2& pixel,
                                    const PathWord& word);
 
 /// Keeps the first `count` events.
@@ -154,8 +163,8 @@ void cut_path(ShotPath& path, std::size_t count);
 /// Where the last ray passes nearest to a point: in front of where it starts.
 Vec3 nearest_on_last(const ShotPath& path, const Vec3& point);
 
-/// Of the numbers of events after which the light runs in air, or of all, the one whose ray passes nearest
-/// to the point before it meets the next optic.
+/// Of the numbers of events after which the light runs in air, or in what it began in, or of all, the one
+/// whose ray passes nearest to the point before it meets the next optic.
 std::size_t events_towards(const ShotPath& path, const Vec3& point);
 
 // How the image of a point moves with the point and with a scene's parameters: the implicit function theorem
@@ -230,8 +239,10 @@ class FitProblem {
     Linearisation linearise();
 
     const Json& document() const { return document_; }
+    const FitScene& scene() const { return scene_; }
     const std::vector<FitParameter>& parameters() const { return parameters_; }
     std::vector<FitPair>& pairs() { return pairs_; }
+    const std::vector<FitPair>& pairs() const { return pairs_; }
     const Json& start() const { return start_; }
 
   private:
@@ -256,5 +267,13 @@ class FitProblem {
     std::vector<FitPair> pairs_;
     FitScene scene_;
 };
+
+/// What each pair's ray starts in.
+std::vector<Media> media_of_pairs(const FitScene& scene, std::span<const FitPair> pairs);
+
+/// Tells of cameras of pairs that do not end in what they began in, and of those of which it is not sure what
+/// they stand in. `began`: media_of_pairs where the fit began.
+std::vector<std::string> media_warnings(const Scene& scene, const FitProblem& problem,
+                                        std::span<const Media> began);
 
 }  // namespace trilens

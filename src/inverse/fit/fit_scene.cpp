@@ -108,6 +108,7 @@ FitScene FitSceneMaker::make(const Json& document, const std::vector<FitParamete
         build(optic, mesh, true);
         made.optics.push_back(std::move(optic));
     }
+    ask_media(made);
     return made;
 }
 
@@ -160,6 +161,9 @@ void FitSceneMaker::set_mesh(FitScene& scene, std::size_t index, const Json& jso
 void FitSceneMaker::build(FitOptic& optic, const Mesh& mesh, bool with_tracer) const {
     optic.surface = make_plain_surface(mesh, {});
     optic.tracer = with_tracer ? make_tracer(*optic.surface) : nullptr;
+    optic.outline = with_tracer && !optic.mirror
+                        ? std::make_shared<const std::vector<Vec3>>(outline_of(*optic.surface))
+                        : nullptr;
     optic.moved = optic.unmoved = {};
     optic.is_moved = false;
 }

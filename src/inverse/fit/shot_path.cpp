@@ -20,11 +20,6 @@ struct OpticMeeting {
     double t = std::numeric_limits<double>::infinity();
 };
 
-Ray unmoved_ray(const FitOptic& optic, const Ray& ray) {
-    if (!optic.is_moved) return ray;
-    return {map_point(optic.unmoved, ray.origin), optic.unmoved.linear * ray.direction};
-}
-
 /// The first optic on the ray, but for where it starts on optic `from`.
 std::optional<OpticMeeting> meet(const FitScene& scene, const Ray& ray, std::size_t from) {
     OpticMeeting first;
@@ -52,6 +47,11 @@ OpticEvent event_at(const FitScene& scene, const OpticMeeting& met) {
 
 }  // namespace
 
+Ray unmoved_ray(const FitOptic& optic, const Ray& ray) {
+    if (!optic.is_moved) return ray;
+    return {map_point(optic.unmoved, ray.origin), optic.unmoved.linear * ray.direction};
+}
+
 void check_path_word(const PathWord& word) {
     if (word == "D") return;
     if (word.find_first_not_of("RT?") != std::string::npos || word.size() > kMostEvents)
@@ -62,14 +62,14 @@ double index_of(const FitScene& scene, Id medium) {
     return medium == kNone ? 1 : scene.optics[medium].ior;
 }
 
-std::optional<ShotPath> shoot_path(const FitScene& scene, const Camera& camera, const Vec2& pixel,
+std::optional<ShotPath> shoot_path(const FitScene& scene, std::size_t camera, const Vec2& pixel,
                                    const PathWord& word) {
-    const std::optional<Ray> from = exact_ray(camera, pixel);
+    const std::optional<Ray> from = exact_ray(scene.cameras[camera], pixel);
     if (!from) return std::nullopt;
     ShotPath path;
     path.view = {from->origin, normalize(from->direction)};
     Ray ray = path.view;
-    Media media;
+    Media media = scene.media[camera].of(path.view);
     std::size_t on = scene.optics.size();
     const auto priority = [&](Id optic) { return scene.optics[optic].priority; };
     for (std::size_t meetings = 0; meetings < kMostEvents; ++meetings) {
@@ -133,7 +133,8 @@ std::size_t events_towards(const ShotPath& path, const Vec3& point) {
     std::size_t best = path.events.size();
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 1; k <= path.events.size(); ++k) {
-        if (k < path.events.size() && path.events[k - 1].after != kNone) continue;
+        const Id within = path.events[k - 1].after;
+        if (k < path.events.size() && within != kNone && within != path.events[0].before) continue;
         const Ray& ray = path.after[k];
         const Vec3 towards = point - ray.origin;
         const double along = dot(towards, ray.direction);

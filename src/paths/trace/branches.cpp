@@ -200,33 +200,34 @@ Media nested(std::vector<Held> held) {
     return media;
 }
 
-/// Where the ray leaves the body that it starts in; none where it starts in no such body.
-std::optional<double> leaves(const PathWorld& world, Id body, const Ray& ray) {
-    const std::optional<SurfaceHit> hit = world.optics[body].tracer->first_hit(ray);
-    if (!hit || !(dot(hit->point.normal, ray.direction) > 0)) return std::nullopt;
-    return hit->t;
+LeavesBody leaving(const PathWorld& world) {
+    return [&world](Id body, const Ray& ray) -> std::optional<double> {
+        const PathOptic& optic = world.optics[body];
+        return optic.mirror ? std::nullopt : leaves_at(optic.tracer->first_hit(ray), ray);
+    };
 }
 
 }  // namespace
 
-Media bodies_along(const PathWorld& world, const std::vector<Id>& asked, const Ray& ray) {
+Media bodies_along(const LeavesBody& leaves, const std::vector<Id>& asked, const Ray& ray) {
     std::vector<Held> held;
-    for (const Id body : asked) {
-        if (world.optics[body].mirror) continue;
-        if (const auto t = leaves(world, body, ray)) held.emplace_back(*t, body);
-    }
+    for (const Id body : asked)
+        if (const auto t = leaves(body, ray)) held.emplace_back(*t, body);
     return nested(std::move(held));
 }
 
-EnclosingBodies enclosing_bodies(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point) {
+Media bodies_along(const PathWorld& world, const std::vector<Id>& asked, const Ray& ray) {
+    return bodies_along(leaving(world), asked, ray);
+}
+
+EnclosingBodies enclosing_bodies(const LeavesBody& leaves, const std::vector<Id>& asked, const Vec3& point) {
     std::vector<Held> held;
     EnclosingBodies around;
     for (const Id body : asked) {
-        if (world.optics[body].mirror) continue;
         double way = 0;
         std::size_t votes = 0;
         for (const Vec3& direction : kDirections)
-            if (const auto t = leaves(world, body, {point, direction})) {
+            if (const auto t = leaves(body, {point, direction})) {
                 way += *t;
                 ++votes;
             }
@@ -235,6 +236,10 @@ EnclosingBodies enclosing_bodies(const PathWorld& world, const std::vector<Id>& 
     }
     around.media = nested(std::move(held));
     return around;
+}
+
+EnclosingBodies enclosing_bodies(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point) {
+    return enclosing_bodies(leaving(world), asked, point);
 }
 
 }  // namespace trilens

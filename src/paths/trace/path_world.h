@@ -166,7 +166,16 @@ Meeting with_microfacet(const PathWorld& world, Meeting at, const Vec2& place);
 /// the body that the ray leaves first as the last entered; of more bodies than Media can hold the ones left
 /// first. `asked`: bodies that may hold the place; others are not looked at.
 
+/// How far a ray goes in a body that it starts in, in units of its direction; none where it starts in none.
+using LeavesBody = std::function<std::optional<double>(Id body, const Ray& ray)>;
+
+/// Where a ray leaves a body whose surface it meets first there; none where it comes to the front.
+inline std::optional<double> leaves_at(const std::optional<SurfaceHit>& hit, const Ray& ray) {
+    return hit && dot(hit->point.normal, ray.direction) > 0 ? std::optional(hit->t) : std::nullopt;
+}
+
 /// By this ray alone.
+Media bodies_along(const LeavesBody& leaves, const std::vector<Id>& asked, const Ray& ray);
 Media bodies_along(const PathWorld& world, const std::vector<Id>& asked, const Ray& ray);
 
 /// What rays from a point start in.
@@ -177,6 +186,7 @@ struct EnclosingBodies {
 
 /// By the vote of several directions, more than half of them: for a surface that is closed, and whose normals
 /// point out of it, they agree.
+EnclosingBodies enclosing_bodies(const LeavesBody& leaves, const std::vector<Id>& asked, const Vec3& point);
 EnclosingBodies enclosing_bodies(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point);
 
 }  // namespace trilens

@@ -19,16 +19,6 @@ namespace {
 constexpr double kBoxFacets = 20'000, kWider = 0.25;
 constexpr int kFinestForBox = 8;
 
-Box box_around(const Surface& surface) {
-    const double per_face =
-        kBoxFacets / (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
-    Box box;
-    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), 1, kFinestForBox);
-    for (const Vec3& point : make_grid(surface, n).points) box.include(point);
-    const Vec3 margin = kWider * box.size();
-    return {box.low - margin, box.high + margin};
-}
-
 bool holds(const Box& box, const Vec3& p) {
     for (int k = 0; k < 3; ++k)
         if (!(box.low[k] <= p[k] && p[k] <= box.high[k])) return false;
@@ -36,6 +26,20 @@ bool holds(const Box& box, const Vec3& p) {
 }
 
 }  // namespace
+
+std::vector<Vec3> outline_of(const Surface& surface) {
+    const double per_face =
+        kBoxFacets / (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), 1, kFinestForBox);
+    return make_grid(surface, n).points;
+}
+
+Box box_around(std::span<const Vec3> outline) {
+    Box box;
+    for (const Vec3& point : outline) box.include(point);
+    const Vec3 margin = kWider * box.size();
+    return {box.low - margin, box.high + margin};
+}
 
 std::optional<Vec3> eye_of(const CameraRays& camera) {
     if (camera.linear) {
@@ -62,52 +66,75 @@ Media CameraMedia::of(const Ray& ray) const {
     for (std::size_t i = 0; i < near.size(); ++i)
         if (holds(boxes[i], ray.origin)) asked.push_back(near[i]);
     if (asked.empty()) return {};
-    return bodies_along(path_world(*world), asked, {ray.origin, normalize_or_zero(ray.direction)});
+    return bodies_along(leaves, asked, {ray.origin, normalize_or_zero(ray.direction)});
 }
 
-CameraMedia camera_media_of(const World& world, const CameraRays& camera) {
+namespace {
+
+std::vector<GlassBody> glass_bodies(const World& world) {
+    std::vector<GlassBody> bodies;
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (!world.optics[i].mirror)
+            bodies.push_back({static_cast<Id>(i), box_around(outline_of(*world.optics[i].surface))});
+    return bodies;
+}
+
+LeavesBody leaving_optics(const World& world) {
+    return [&world](Id optic, const Ray& ray) {
+        return leaves_at(limit_tracer(world, optic).first_hit(ray), ray);
+    };
+}
+
+}  // namespace
+
+CameraMedia camera_media_of(std::span<const GlassBody> bodies, const LeavesBody& leaves,
+                            const CameraRays& camera) {
     CameraMedia around;
     const std::optional<Vec3> eye = eye_of(camera);
-    for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        if (world.optics[i].mirror) continue;
-        const Box box = box_around(*world.optics[i].surface);
-        if (eye && !holds(box, *eye)) continue;
-        around.near.push_back(static_cast<Id>(i));
-        around.boxes.push_back(box);
+    for (const GlassBody& body : bodies) {
+        if (eye && !holds(body.box, *eye)) continue;
+        around.near.push_back(body.optic);
+        around.boxes.push_back(body.box);
     }
     if (around.near.empty()) return around;
     if (!eye) {
-        around.world = &world;
+        around.leaves = leaves;
         around.by_ray = true;
         return around;
     }
-    EnclosingBodies found = enclosing_bodies(path_world(world), around.near, *eye);
+    EnclosingBodies found = enclosing_bodies(leaves, around.near, *eye);
     around.fixed = found.media;
-    around.unsure = std::move(found.unsure);
+    if (bodies.size() > 1) around.unsure = std::move(found.unsure);
     return around;
+}
+
+CameraMedia camera_media_of(const World& world, const CameraRays& camera) {
+    return camera_media_of(glass_bodies(world), leaving_optics(world), camera);
 }
 
 CameraMedia media_by_ray(const World& world) {
     CameraMedia around;
-    around.world = &world;
+    around.leaves = leaving_optics(world);
     around.by_ray = true;
-    for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        if (world.optics[i].mirror) continue;
-        around.near.push_back(static_cast<Id>(i));
-        around.boxes.push_back(box_around(*world.optics[i].surface));
+    for (const GlassBody& body : glass_bodies(world)) {
+        around.near.push_back(body.optic);
+        around.boxes.push_back(body.box);
     }
     return around;
 }
 
-void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn) {
+void warn_of_unsure_media(const CameraMedia& around, const std::function<std::string(Id optic)>& name,
+                          const Warn& warn) {
     if (!warn) return;
-    const auto bodies = std::count_if(world.optics.begin(), world.optics.end(),
-                                      [](const Optic& optic) { return !optic.mirror; });
-    if (bodies < 2) return;  // what leaves a body leaves it whether it was inside or not
     for (const Id optic : around.unsure)
-        warn("the camera is inside of " + world.names[world.optics[optic].mesh] +
+        warn("the camera is inside of " + name(optic) +
              " in some directions only, for that is no closed surface or is inside out; it is taken to be " +
              (around.fixed.holds(optic) ? "inside" : "outside"));
+}
+
+void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn) {
+    warn_of_unsure_media(
+        around, [&world](Id optic) { return world.names[world.optics[optic].mesh]; }, warn);
 }
 
 void set_initial_media(const CameraMedia& around, SampleViews& views) {

@@ -1,9 +1,11 @@
 // A camera's exact rays, also those of an explicit RayMesh, and the media that they start in.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/math/box.h"
@@ -70,12 +72,14 @@ std::optional<Vec3> eye_of(const CameraRays& camera);
 
 /// The media that a camera's rays start in.
 struct CameraMedia {
-    const World* world = nullptr;
+    LeavesBody leaves;       // where by_ray
     bool by_ray = false;     // each ray has its own: `of` asks it
     std::vector<Id> near;    // optics of glass that may hold where some ray starts
     std::vector<Box> boxes;  // of these; nothing of them lies outside
     Media fixed;             // of all rays where not by_ray
-    std::vector<Id> unsure;  // bodies that hold the eye in some directions only; see EnclosingBodies
+    /// Bodies that hold the eye in some directions only, see EnclosingBodies; where there is one body alone
+    /// none, as what leaves it leaves it whether it was inside or not.
+    std::vector<Id> unsure;
 
     /// Whether rays start in air, all of them.
     bool none() const { return !by_ray && fixed.count == 0; }
@@ -84,13 +88,29 @@ struct CameraMedia {
 };
 
 /// Where all rays of the camera start at its eye, one answer for all. Where they do not (parallel rays, a
-/// near plane that cuts, moving eyes) each ray is asked where it itself meets bodies first.
+/// near plane that cuts, moving eyes) each ray is asked where it itself meets bodies first. The world must
+/// live longer.
 CameraMedia camera_media_of(const World& world, const CameraRays& camera);
+
+/// A body of glass of no world, and a box that it lies in.
+struct GlassBody {
+    Id optic = kNone;
+    Box box;
+};
+/// The same among these bodies; each lies in its box.
+CameraMedia camera_media_of(std::span<const GlassBody> bodies, const LeavesBody& leaves,
+                            const CameraRays& camera);
+
+/// Places of a surface, and the box about them, or about where an affine map takes them, that it lies in.
+std::vector<Vec3> outline_of(const Surface& surface);
+Box box_around(std::span<const Vec3> outline);
 
 /// What rays of any kind start in: each is asked.
 CameraMedia media_by_ray(const World& world);
 
-/// Warns where it cannot be told for sure what the eye is inside of.
+/// Warns where it cannot be told for sure what the eye is inside of. `name`: of an optic.
+void warn_of_unsure_media(const CameraMedia& around, const std::function<std::string(Id optic)>& name,
+                          const Warn& warn);
 void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn);
 
 /// Sets what each sample's ray starts in.
