@@ -116,6 +116,12 @@ void require_fit(const std::string& json, Choices& choose) {
     require(truth.rms_start <= kPixels,
             fmt::format("exact pairs are {} pixels off where the fit begins", truth.rms_start));
     require(truth.rms <= kPixels, fmt::format("a fit leaves the truth, for {} pixels", truth.rms));
+    require(std::ranges::none_of(truth.warnings,
+                                 [](const std::string& warning) {
+                                     return warning.find("does not end in what it began in") !=
+                                            std::string::npos;
+                                 }),
+            "a camera leaves the truth's glass");
 
     require(on_threads(3, fitted).document == truth.document, "a fit depends on the number of threads");
 

@@ -330,6 +330,30 @@ TEST_CASE("of a camera that leaves its glass no image is taken for one from with
     }
 }
 
+TEST_CASE("of images near a pixel a fit takes one that its ray follows, none behind other glass",
+          "[inverse][law]") {
+    // A calibrated dome, from whose bubble of air the outer skin alone has images beside the exact ones.
+    const InGlass one{
+        "dome",
+        scene_of(R"("type": "perspective", "yfov": 70, "lookAt": {"eye": [0, 0, 0], "at": [0, 0, 1]})",
+                 sphere("bubble", R"("center": [0.002, -0.001, 0.012], "radius": 0.0501)",
+                        R"("material": "air", "priority": 1)") +
+                     "," +
+                     sphere("dome", R"("center": [0.002, -0.001, 0.012], "radius": 0.0571)",
+                            R"("material": "glass")")),
+        "TT",
+        {{"/meshes/0/primitive/center", "[0.001, 0, 0.011]"}},
+        {"/meshes/0/primitive/center"}};
+    const std::vector<Correspondence> pairs = exact_pairs(one).pairs;
+    FitRequest request;
+    request.free = one.free;
+    request.match = FitMatch::kNearest;
+    const FitResult found = fit_scene(parse_scene(one.json, "", one.start), pairs, request);
+    CHECK(found.rms < 1e-7);
+    CHECK(worst_error(found, one.json) < 1e-8);
+    for (const FittedPair& pair : found.pairs) CHECK(pair.path == "TT");
+}
+
 TEST_CASE("under water a fit finds by itself which pairs are of points there, and which of points in the air",
           "[inverse][law]") {
     const InGlass one = cameras_in_glass()[2];

@@ -88,9 +88,39 @@ bool fits(const std::string& word, const std::string& asked) {
                       [](char is, char wanted) { return is == wanted || (wanted == '?' && is != 'D'); });
 }
 
+/// Whether the ray at an image's pixel goes over the optics that the image is over: of images over one optic
+/// others may lie between.
+bool is_followed(const World& world, const FitScene& scene, const FitPair& pair, const WorldImage& image) {
+    const std::string word = word_of(image);
+    if (word.empty()) return false;
+    const std::optional<ShotPath> path = shoot_path(scene, pair.camera, image.pixel, word);
+    if (!path) return false;
+    std::size_t k = 0;
+    for (const Step& step : image.steps)
+        if (step.event != Event::kPass &&
+            (k >= path->events.size() ||
+             scene.optics[path->events[k++].optic].mesh != world.optics[step.optic].mesh))
+            return false;
+    return true;
+}
+
+/// Of the images that a pair may be, the nearest that is followed; where none is, the nearest.
+const WorldImage* nearest_image(const World& world, const FitScene& scene, const FitPair& pair,
+                                const std::vector<WorldImage>& images) {
+    const WorldImage* best = nullptr;
+    std::pair<bool, double> least;
+    for (const WorldImage& image : images) {
+        if (!fits(word_of(image), pair.word)) continue;
+        const std::pair off(!is_followed(world, scene, pair, image), length(image.pixel - pair.pixel));
+        if (!best || off < least) best = &image, least = off;
+    }
+    return best;
+}
+
 /// Starts each pair at an image of its point in the scene as it is.
 void match_images(const World& world, std::span<const Correspondence> given, FitMatch match,
-                  std::vector<FitPair>& pairs) {
+                  FitProblem& problem) {
+    std::vector<FitPair>& pairs = problem.pairs();
     for (std::size_t c = 0; c < world.scene.cameras.size(); ++c) {
         std::vector<Vec3> points;
         std::vector<std::size_t> of_pair;
@@ -102,16 +132,12 @@ void match_images(const World& world, std::span<const Correspondence> given, Fit
         const std::vector<PointProjection> found = project_points(world, request, points);
         for (std::size_t k = 0; k < points.size(); ++k) {
             FitPair& pair = pairs[of_pair[k]];
-            const int wanted = given[of_pair[k]].image;
-            const WorldImage* best = nullptr;
+            const auto wanted = static_cast<std::size_t>(given[of_pair[k]].image);
             const std::vector<WorldImage>& images = found[k].images;
-            for (std::size_t m = 0; m < images.size(); ++m) {
-                if (match == FitMatch::kId ? static_cast<int>(m) != wanted
-                                           : !fits(word_of(images[m]), pair.word))
-                    continue;
-                if (!best || length(images[m].pixel - pair.pixel) < length(best->pixel - pair.pixel))
-                    best = &images[m];
-            }
+            const WorldImage* best = match != FitMatch::kId
+                                         ? nearest_image(world, problem.scene(), pair, images)
+                                     : wanted < images.size() ? &images[wanted]
+                                                              : nullptr;
             pair.is_lost = !best;
             if (!best) continue;
             pair.guess = best->pixel;
@@ -325,7 +351,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
         result.iterations += minimise(problem.least_squares(), rough).iterations;
         problem.linearise();  // guesses and events of the end
     } else {
-        match_images(*make_world(scene, {}), given, request.match, problem.pairs());
+        match_images(*make_world(scene, {}), given, request.match, problem);
     }
 
     problem.residual = FitResidual::kImage;
