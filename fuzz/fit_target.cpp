@@ -83,6 +83,7 @@ Unknown unknown_of(Choices& choose, const Scene& scene) {
         default:
             unknown.pointers = {"/cameras/0/yfov"};
     }
+    if (unknown.pointers.empty()) unknown.pointers.push_back("/meshes/0/transform/translate");
     return unknown;
 }
 
