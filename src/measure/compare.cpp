@@ -230,10 +230,14 @@ void judge(const CompareOptions& options, Comparison& result) {
     complain(n.inf_test, "an infinity", "test");
     if (n.hard > options.allowfailures)
         result.reasons.push_back(sentence(n.hard, " pixels differ by more than hardfail ", options.hardfail));
-    if (n.fail > options.allowfailures && percent_of(n.fail, n.pixels) > options.failpercent) {
+    // Pixels beyond hardfail fail, too: without a fail of their own they are told of already.
+    if (n.fail > options.allowfailures && percent_of(n.fail, n.pixels) > options.failpercent &&
+        std::isfinite(options.fail)) {
+        const std::string hard =
+            n.hard > 0 && options.hardfail < options.fail ? sentence(" or hardfail ", options.hardfail) : "";
         result.reasons.push_back(sentence(n.fail, " pixels (", percent_of(n.fail, n.pixels),
-                                          " %) differ by more than fail ", options.fail, ", allowed are ",
-                                          options.failpercent, " %"));
+                                          " %) differ by more than fail ", options.fail, hard,
+                                          ", allowed are ", options.failpercent, " %"));
     }
     if (!result.reasons.empty()) {
         result.verdict = Verdict::kFailure;

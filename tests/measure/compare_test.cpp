@@ -193,6 +193,23 @@ TEST_CASE("hardfail holds where no pixel exceeds fail", "[measure][compare][law]
     CHECK(compare(a, b, options).verdict == Verdict::kPass);
 }
 
+TEST_CASE("pixels beyond hardfail are not said to be beyond fail", "[measure][compare]") {
+    const Image a = constant(16, 16, 0.5f), b = constant(16, 16, 0.75f);
+    using Reasons = std::vector<std::string>;
+    const std::string hard = "256 pixels differ by more than hardfail 0.125";
+    CompareOptions options = only(std::numeric_limits<double>::infinity(), 0.125);
+    CHECK(compare(a, b, options).reasons == Reasons{hard});
+    options.failpercent = 50;
+    CHECK(compare(a, b, options).reasons == Reasons{hard});
+    options.fail = 0.5;
+    CHECK(
+        compare(a, b, options).reasons ==
+        Reasons{hard, "256 pixels (100 %) differ by more than fail 0.5 or hardfail 0.125, allowed are 50 %"});
+    options.fail = 0.0625;
+    CHECK(compare(a, b, options).reasons ==
+          Reasons{hard, "256 pixels (100 %) differ by more than fail 0.0625, allowed are 50 %"});
+}
+
 TEST_CASE("images of different make are not comparable, and the message says why",
           "[measure][compare][bad-input]") {
     const Image black = constant(64, 64, 0);
