@@ -117,12 +117,42 @@ std::string other_kind(const std::string& file) {
     return "";
 }
 
+/// Rethrows what stands at a place that a change names as the mistake of who asks for the change.
+void blame_changes(const InputError& error, const std::string& file,
+                   std::span<const SceneOverride> overrides) {
+    const std::string what = error.what();
+    for (const SceneOverride& change : overrides) {
+        const std::string place = one_line(file) + ": " + one_line(change.pointer);
+        if (change.set_by.empty() || !what.starts_with(place)) continue;
+        const char next = what.size() > place.size() ? what[place.size()] : ':';
+        if (next != ':' && next != '/') continue;
+        throw InputError(change.set_by, "", what.substr(one_line(file).size() + 2) + " (of " + file + ")");
+    }
+}
+
+Scene read_scene_text(const std::string& text, const SceneSource& source,
+                      std::span<const SceneOverride> overrides, const TextureReader& textures,
+                      const ImportOptions& import);
+
 }  // namespace
 
 SceneSource::SceneSource(std::string named)
     : file(std::move(named)), folder(std::filesystem::path(file).parent_path().string()) {}
 
 Scene load_scene_text(const std::string& text, const SceneSource& source,
+                      std::span<const SceneOverride> overrides, const TextureReader& textures,
+                      const ImportOptions& import) {
+    try {
+        return read_scene_text(text, source, overrides, textures, import);
+    } catch (const InputError& error) {
+        blame_changes(error, source.file, overrides);
+        throw;
+    }
+}
+
+namespace {
+
+Scene read_scene_text(const std::string& text, const SceneSource& source,
                       std::span<const SceneOverride> overrides, const TextureReader& textures,
                       const ImportOptions& import) {
     const std::string& file = source.file;
@@ -164,6 +194,8 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     warn_of_appearance(reading);
     return std::move(reading.scene);
 }
+
+}  // namespace
 
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
                  const TextureReader& textures, const ImportOptions& import) {

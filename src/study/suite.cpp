@@ -38,7 +38,8 @@ SceneRequest scene_request(const RenderTest& test) {
     SceneRequest request;
     request.file = test.scene;
     for (const SceneSetting& setting : test.set)
-        request.overrides.push_back({setting.pointer, setting.value});
+        request.overrides.push_back(
+            {.pointer = setting.pointer, .value = setting.value, .set_by = test.folder + "/test.json: /set"});
     return request;
 }
 

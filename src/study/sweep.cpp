@@ -340,7 +340,8 @@ SweepRequest read_sweep_file(const std::string& file, SweepRequest request) {
     if (!sweep.camera.empty()) request.camera = sweep.camera;
     if (!sweep.title.empty()) request.title = sweep.title;
     if (sweep.repeats > 0) request.repeats = sweep.repeats;
-    for (const auto& [pointer, value] : sweep.set) request.scene.overrides.push_back({pointer, value});
+    for (const auto& [pointer, value] : sweep.set)
+        request.scene.overrides.push_back({.pointer = pointer, .value = value, .set_by = file + ": /set"});
     if (request.title.empty()) request.title = std::filesystem::path(file).stem().string();
     // What is wrong with the axes is wrong with the file.
     try {

@@ -35,7 +35,7 @@ E named(const AxisValue& value) {
 }
 
 void override_with(const std::string& pointer, const std::string& value, PointRequest& request) {
-    request.scene.overrides.push_back({pointer, value});
+    request.scene.overrides.push_back({.pointer = pointer, .value = value, .set_by = "--over"});
 }
 
 /// The classic engine with K pieces; an axis of engines may still say another.

@@ -49,6 +49,20 @@ TEST_CASE("a reference may lie beside test.json; a wrong camera is that file's",
     const CommandRun gone = run_trilens("test '" + folder + "'");
     CHECK(gone.exit_code == 6);
     CHECK(gone.out.find("test.json: /scene: there is no scene '") != std::string::npos);
+    // A value that it sets in the scene is its mistake, not the scene's.
+    const auto setting = [&](const std::string& set) {
+        write_file(folder, "test.json", R"({ "against": "truth", "set": )" + set + " }");
+        return run_trilens("test '" + folder + "'").out;
+    };
+    const std::string scene = " (of " + folder + "/scene.json)";
+    CHECK(setting(R"({"/film/wdth": 3})")
+              .find("test.json: /set: /film/wdth: names nothing: unknown key 'wdth'; did you mean 'width'?" +
+                    scene) != std::string::npos);
+    CHECK(setting(R"({"/film/width": "a"})")
+              .find("test.json: /set: /film/width: expected an integer, found the string \"a\"" + scene) !=
+          std::string::npos);
+    CHECK(setting(R"({"/film": {"width": 0}})").find("test.json: /set: /film/width: 0 is out of range") !=
+          std::string::npos);
     write_file(folder, "test.json", R"({ "against": "truth", "layer": "nope" })");
     const CommandRun layer = run_trilens("test '" + folder + "'");
     INFO(layer.out);

@@ -87,6 +87,26 @@ TEST_CASE("corner rays, grids and errors asked for are axes, against one truth",
     CHECK(errors[0] < errors[1]);
 }
 
+TEST_CASE("what a sweep sets and its scene cannot take is told as the sweep's mistake",
+          "[cli][sweep][bad-input]") {
+    const std::string folder = scratch_dir("cli_sweep_sets");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    const auto error_of = [&](const std::string& what) {
+        const CommandRun run = run_trilens("sweep run " + what + " -o " + folder + "/out");
+        CHECK(run.exit_code == 3);
+        return run.err;
+    };
+    const std::string file = write_file(folder, "sweep.json", R"({ "scenes": ["room.json"],
+        "over": [ {"axis": "resolution", "values": [1]} ], "set": {"/film/wdth": 64} })");
+    CHECK(error_of(file).find(
+              file + ": /set: /film/wdth: names nothing: unknown key 'wdth'; did you mean 'width'? (of " +
+              scene + ")") != std::string::npos);
+    CHECK(error_of(scene + " --over /film/width=a").find("error: --over: /film/width: expected an integer") !=
+          std::string::npos);
+    CHECK(error_of(scene + " --over resolution=1 --set /film/wdth=64")
+              .find(scene + ": /film/wdth: names nothing") != std::string::npos);
+}
+
 TEST_CASE("a sweep's folder takes no other scene, and the same one from anywhere", "[cli][sweep]") {
     const std::string folder = scratch_dir("cli_sweep_owner");
     write_file(folder, "room.json", small_scene());

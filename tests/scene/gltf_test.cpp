@@ -195,9 +195,9 @@ TEST_CASE("a texture has the picture of EXT_texture_webp where it has one", "[sc
         const GltfModel model = read_gltf(file_with(before, R"({"source":1})"));
         CHECK((model.warnings.empty() && model.materials[0].written.at("baseColorTexture").at("image") == 1));
     }
-    const std::string place = ": /textures/0/extensions/EXT_texture_webp: ";
-    for (const char* bad : {"{}", R"({"source":2})", R"({"source":-1})", R"({"source":-5})"})
-        CHECK(begins_with(read_error(file_with("", bad)), place));
+    const std::string place = ": /textures/0/extensions/EXT_texture_webp";
+    CHECK(read_error(file_with("", "{}")) == place + ": has no 'source'");
+    CHECK(begins_with(read_error(file_with("", R"({"source":2})")), place + "/source: 2 is out of range"));
     // The library knows no WebP in a data URI: its bytes come all the same.
     Square square;
     square.more = R"(,"images":[{"uri":"data:image/webp;base64,UklGRg=="}])";

@@ -25,6 +25,7 @@ struct SceneOverride {
     std::string pointer;
     std::string value;
     bool removes = false;  // takes what the pointer names away, whatever the value; later entries move up
+    std::string set_by = {};  // what asks for it, for messages: "test.json: /set"; empty: --set
 };
 
 /// How glTF files become scenes.

@@ -198,13 +198,7 @@ class MaterialReader {
         const auto webp = texture.extensions.find("EXT_texture_webp");
         if (webp == texture.extensions.end())
             return source_.checked(texture.source, into_.images.size(), place, "image");
-        const std::string webp_place = place + "/extensions/EXT_texture_webp";
-        if (!webp->second.IsObject() || !webp->second.Get("source").IsInt())
-            source_.fail(webp_place, "has no source");
-        const int index = source_.checked(webp->second.Get("source").GetNumberAsInt(), into_.images.size(),
-                                          webp_place, "image");
-        if (index < 0) source_.fail(webp_place, "its source is negative");
-        return index;
+        return webp->second.Get("source").GetNumberAsInt();
     }
 
     void read_sampler(int index, TextureSampler& sampler, Json& written) {

@@ -21,7 +21,7 @@ struct Target {
     const std::string& file;
 
     [[noreturn]] void fail(const std::string& message) const {
-        fail_at(file, change.pointer, message + " (in --set)");
+        fail_at(file, change.pointer, message + (change.set_by.empty() ? " (in --set)" : ""));
     }
 };
 
