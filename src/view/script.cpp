@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace trilens {
 
@@ -33,107 +32,26 @@ std::string action_of(const Json& step) {
     return found;
 }
 
-std::vector<double> numbers_in(const Json& value, std::size_t count) {
-    std::vector<double> numbers;
-    if (value.is_array() && value.size() == count)
-        for (const Json& one : value)
-            if (one.is_number()) numbers.push_back(one.get<double>());
-    if (value.is_number() && count == 1) numbers.push_back(value.get<double>());
-    if (numbers.size() != count)
-        throw UsageError(fmt::format("needs {} number{}", count, count == 1 ? "" : "s"));
-    return numbers;
-}
+constexpr double kPatience = 600;  // seconds for any one picture
+constexpr double kSmallestDolly = 1e-6, kLargestDolly = 1e6;
+constexpr int kMostStepFrames = 1'000'000;
+constexpr double kMostSeed = 1e15;  // whole numbers up to there
 
-std::string text_in(const Json& value) {
-    if (!value.is_string()) throw UsageError("needs a text");
-    return value.get<std::string>();
-}
-
-double number_in(const Json& value) {
-    return numbers_in(value, 1)[0];
-}
-
-bool flag_in(const Json& value) {
-    if (!value.is_boolean()) throw UsageError("needs true or false");
-    return value.get<bool>();
-}
-
-template <typename E>
-E named_in(const Json& value) {
-    const auto found = find_named<E>(text_in(value));
-    if (!found)
-        throw UsageError("unknown: \"" + text_in(value) + "\"" + suggestion(text_in(value), names_of<E>()));
-    return *found;
-}
-
-/// The same, or null for what the scene says.
-template <typename E>
-std::optional<E> chosen_in(const Json& value) {
-    return value.is_null() ? std::nullopt : std::optional<E>(named_in<E>(value));
-}
-
-std::size_t camera_in(const Json& value, const Json& scene) {
-    const Json& cameras = scene.at("cameras");
-    for (std::size_t i = 0; i < cameras.size(); ++i)
-        if (value.is_string() ? cameras[i].value("name", "") == value.get<std::string>()
-                              : value.is_number_unsigned() && value.get<std::size_t>() == i)
-            return i;
-    throw UsageError("the scene has no camera " + value.dump());
-}
-
-using TakeSetting = std::function<void(ViewSettings&, const Json& value, const Json& scene)>;
-
-const std::map<std::string, TakeSetting>& setting_takers() {
-    static const std::map<std::string, TakeSetting> kTakers{
-        {"n", [](ViewSettings& to, const Json& v,
-                 const Json&) { to.frame.resolution = static_cast<int>(number_in(v)); }},
-        {"rays",
-         [](ViewSettings& to, const Json& v, const Json&) { to.frame.rays = chosen_in<CornerRays>(v); }},
-        {"grid",
-         [](ViewSettings& to, const Json& v, const Json&) { to.frame.grid = chosen_in<GridKind>(v); }},
-        {"facetUse",
-         [](ViewSettings& to, const Json& v, const Json&) { to.frame.facets = named_in<FacetUse>(v); }},
-        {"maxError",
-         [](ViewSettings& to, const Json& v, const Json&) {
-             to.frame.max_error = v.is_null() ? std::nullopt : std::optional(number_in(v));
-         }},
-        {"camera",
-         [](ViewSettings& to, const Json& v, const Json& scene) { to.frame.camera = camera_in(v, scene); }},
-        {"engine", [](ViewSettings& to, const Json& v, const Json&) { to.engine = named_in<Engine>(v); }},
-        {"exposure", [](ViewSettings& to, const Json& v, const Json&) { to.tone.exposure = number_in(v); }},
-        {"tone",
-         [](ViewSettings& to, const Json& v, const Json&) { to.tone.curve = tone_curve(text_in(v)); }},
-        {"layer",
-         [](ViewSettings& to, const Json& v, const Json&) {
-             static const std::vector<std::string> kLayers{"", "direct", "reflect", "refract"};
-             if (std::find(kLayers.begin(), kLayers.end(), text_in(v)) == kLayers.end())
-                 throw UsageError("unknown layer" + suggestion(text_in(v), kLayers));
-             to.layer = text_in(v);
-         }},
-        {"left", [](ViewSettings& to, const Json& v, const Json&) { to.left = named_in<ShownPicture>(v); }},
-        {"right", [](ViewSettings& to, const Json& v, const Json&) { to.right = named_in<ShownPicture>(v); }},
-        {"wipe",
-         [](ViewSettings& to, const Json& v, const Json&) { to.wipe = std::clamp(number_in(v), 0.0, 1.0); }},
-        {"scale", [](ViewSettings& to, const Json& v, const Json&) { to.difference_scale = number_in(v); }},
-        {"facets", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.facets = flag_in(v); }},
-        {"edges", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.edges = flag_in(v); }},
-        {"folds", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.folds = flag_in(v); }},
-        {"method", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.method = flag_in(v); }},
-        {"caustics", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.caustics = flag_in(v); }},
-        {"birdsEye", [](ViewSettings& to, const Json& v, const Json&) { to.birds_eye.shown = flag_in(v); }},
-        {"azimuth",
-         [](ViewSettings& to, const Json& v, const Json&) { to.birds_eye.azimuth = number_in(v); }},
-        {"elevation",
-         [](ViewSettings& to, const Json& v, const Json&) { to.birds_eye.elevation = number_in(v); }},
-        {"distance",
-         [](ViewSettings& to, const Json& v, const Json&) { to.birds_eye.distance = number_in(v); }}};
-    return kTakers;
+int frames_of(const Json& step) {
+    if (!step.contains("frames")) return 1;
+    try {
+        return count_in(step.at("frames"), kMostStepFrames);
+    } catch (const UsageError& error) {
+        throw UsageError(std::string("frames: ") + error.what());
+    }
 }
 
 /// A move's share for one of several frames.
 CameraMove move_of(const std::string& action, const Json& value, int frames) {
     using Kind = CameraMove::Kind;
-    if (action == "dolly") return {Kind::kDolly, {std::pow(number_in(value), 1.0 / frames), 0, 0}};
+    if (action == "dolly")
+        return {Kind::kDolly,
+                {std::pow(number_in(value, kSmallestDolly, kLargestDolly), 1.0 / frames), 0, 0}};
     if (action == "walk") {
         const auto by = numbers_in(value, 3);
         return {Kind::kWalk, Vec3(by[0], by[1], by[2]) / static_cast<double>(frames)};
@@ -183,24 +101,37 @@ bool is_pointer(const std::string& action) {
     return action == "drag" || action == "click" || action == "wheel";
 }
 
-constexpr double kPatience = 600;  // seconds for any one picture
+/// Throws UsageError for values that are none, where that can be told without a scene.
+void check_step(const Json& step, const std::string& action) {
+    const Json& value = step.at(action);
+    const int frames = frames_of(step);
+    if (is_pointer(action)) pointer_step(step, action);
+    if (action == "turntable")
+        count_in(value, kMostStepFrames);
+    else if (is_move(action))
+        move_of(action, value, frames);
+    else if (action == "wait" && value != "done" && value != "picture")
+        number_in(value, 0, kPatience);
+    else if (action == "undo" || action == "redo")
+        count_in(value, static_cast<int>(kMostUndoSteps));
+    else if (action == "random")
+        number_in(value, 0, kMostSeed);
+    else if (action == "show" && value.is_object()) {
+        Json apart = value;
+        apart.erase("camera");
+        shown_settings(apart, {}, Json());
+    }
+}
+
+/// The frame of what is animated now. Throws UsageError where that has none such.
+double frame_in(const Json& value, SceneViewer& viewer) {
+    viewer.drawing().wait_shown(kPatience);
+    const auto drawn = viewer.drawn();
+    if (!drawn || !drawn->animation) throw UsageError("the scene has no animation");
+    return number_in(value, drawn->animation->first, drawn->animation->last);
+}
 
 }  // namespace
-
-ViewSettings shown_settings(const Json& show, const ViewSettings& from, const Json& scene) {
-    if (!show.is_object()) throw UsageError("\"show\" needs an object of settings");
-    ViewSettings to = from;
-    for (const auto& [key, value] : show.items()) {
-        const auto taker = setting_takers().find(key);
-        if (taker == setting_takers().end()) {
-            std::vector<std::string> known;
-            for (const auto& one : setting_takers()) known.push_back(one.first);
-            throw UsageError("unknown setting \"" + key + "\"" + suggestion(key, known));
-        }
-        taker->second(to, value, scene);
-    }
-    return to;
-}
 
 Script::Script(const std::string& file, const std::string& text) : file_(file) {
     const Json all = Json::parse(text, nullptr, false);
@@ -213,10 +144,11 @@ Script::Script(const std::string& file, const std::string& text) : file_(file) {
         if (!step.is_object()) throw InputError(file, place, "a step is an object");
         try {
             const std::string action = action_of(step);
-            const int frames = step.contains("frames") ? static_cast<int>(number_in(step.at("frames"))) : 1;
-            if (frames < 1 || frames > 1'000'000) throw UsageError("frames: from 1 to 1000000");
-            if (is_pointer(action)) pointer_step(step, action);
-            if (is_move(action) && action != "turntable") move_of(action, step.at(action), frames);
+            try {
+                check_step(step, action);
+            } catch (const UsageError& error) {
+                throw UsageError(action + ": " + error.what());
+            }
         } catch (const UsageError& error) {
             throw InputError(file, place, error.what());
         }
@@ -248,8 +180,7 @@ bool Script::advance(SceneViewer& viewer) {
 /// Each frame's picture is waited for when the next is due, so that a window is drawn meanwhile.
 bool Script::run_moves(SceneViewer& viewer, const Json& step, const std::string& action) {
     const bool turns = action == "turntable";
-    const Json count = turns ? step.at(action) : step.contains("frames") ? step.at("frames") : Json(1);
-    const int frames = std::max(1, static_cast<int>(number_in(count)));
+    const int frames = turns ? count_in(step.at(action), kMostStepFrames) : frames_of(step);
     viewer.drawing().wait_shown(kPatience);
     viewer.move(turns ? CameraMove{CameraMove::Kind::kOrbit, {360.0 / frames, 0, 0}}
                       : move_of(action, step.at(action), frames));
@@ -261,7 +192,7 @@ bool Script::run_moves(SceneViewer& viewer, const Json& step, const std::string&
 /// To the place, pressed there, dragged in so many frames, released.
 bool Script::run_pointer(SceneViewer& viewer, const Json& step, const std::string& action) {
     const PointerStep pointer = pointer_step(step, action);
-    const int frames = step.contains("frames") ? static_cast<int>(number_in(step.at("frames"))) : 1;
+    const int frames = frames_of(step);
     Pointer now = pointer.held;
     const double share = std::clamp(static_cast<double>(frame_ - 1) / frames, 0.0, 1.0);
     now.at = pointer.from + share * (pointer.to - pointer.from);
@@ -367,7 +298,7 @@ bool Script::run(SceneViewer& viewer, const Json& step) {
         }
         viewer.change("", settings);
     } else if (action == "time") {
-        settings.time = number_in(value);
+        settings.time = frame_in(value, viewer);
         viewer.change("", settings);
     } else if (action == "wait") {
         if (value == "done")
@@ -375,21 +306,21 @@ bool Script::run(SceneViewer& viewer, const Json& step) {
         else if (value == "picture")
             viewer.drawing().wait_shown(kPatience);
         else
-            viewer.drawing().wait_done(std::clamp(number_in(value), 0.0, kPatience));
+            viewer.drawing().wait_done(number_in(value, 0, kPatience));
     } else if (action == "screenshot") {
         if (screenshot) screenshot(text_in(value));
     } else if (action == "save") {
         viewer.save_or_throw(text_in(value));
     } else if (action == "undo" || action == "redo") {
-        for (int i = 0; i < static_cast<int>(number_in(value)); ++i)
+        for (int i = count_in(value, static_cast<int>(kMostUndoSteps)); i > 0; --i)
             action == "undo" ? viewer.undo_step() : viewer.redo_step();
     } else if (action == "reload") {
         viewer.reload_files();
     } else if (action == "random") {
-        if (frame_ == 0) random_ = static_cast<std::uint64_t>(number_in(value));
+        if (frame_ == 0) random_ = static_cast<std::uint64_t>(number_in(value, 0, kMostSeed));
         run_random(viewer);
         if (random_ % 4 != 0) viewer.drawing().wait_shown(kPatience);
-        return frame_ + 1 < (step.contains("frames") ? static_cast<int>(number_in(step.at("frames"))) : 1);
+        return frame_ + 1 < frames_of(step);
     }
     return false;
 }

@@ -68,4 +68,15 @@ class Script {
 /// values that are none.
 ViewSettings shown_settings(const Json& show, const ViewSettings& from, const Json& scene);
 
+// The values of steps. All throw UsageError for what is none, or out of its range.
+
+/// So many numbers: an array of them, or one by itself.
+std::vector<double> numbers_in(const Json& value, std::size_t count);
+/// One from `least` to `most`, which may be infinite.
+double number_in(const Json& value, double least, double most);
+/// A whole one from 1.
+int count_in(const Json& value, int most);
+std::string text_in(const Json& value);
+bool flag_in(const Json& value);
+
 }  // namespace trilens

@@ -4,6 +4,7 @@
 #include <trilens/error.h>
 #include <trilens/utilities.h>
 
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 
@@ -96,6 +97,12 @@ bool files_changed(Session& session) {
         changed = true;
     }
     return changed;
+}
+
+std::string missing_file(const Session& session) {
+    const auto missing = std::find_if(session.files.begin(), session.files.end(),
+                                      [](const FileStamp& file) { return !stamp_of(file.path); });
+    return missing == session.files.end() ? "" : missing->path;
 }
 
 void begin_change(Session& session, const std::string& gesture) {

@@ -124,6 +124,9 @@ void reload(Session& session, const SceneRequest& request);
 /// there just now were not. What is seen becomes known, so that one change is told once.
 bool files_changed(Session& session);
 
+/// The first of the files that the scene was made of that is not there just now; empty: all are.
+std::string missing_file(const Session& session);
+
 /// Puts the present state into the past, before a change called `gesture`; a change that has the name of the
 /// one before it goes on with that step, unless end_gesture was called between them.
 void begin_change(Session& session, const std::string& gesture);

@@ -5,6 +5,7 @@
 #include <trilens/utilities.h>
 
 #include <cmath>
+#include <utility>
 
 #include "view/display_stream.h"
 
@@ -91,7 +92,17 @@ void SceneViewer::look_for_changes() {
     const auto now = Clock::now();
     if (seconds_between(looked_, now) < 0.5) return;
     looked_ = now;
-    if (files_changed(session_)) reload_files();
+    const std::string missing = missing_file(session_);
+    const std::string was = std::exchange(gone_, missing);
+    if (files_changed(session_))
+        reload_files();
+    else if (!was.empty() && missing != was && !failed_)
+        message_ = was + " is back, as it was";
+}
+
+std::string SceneViewer::gone() const {
+    return gone_.empty() ? ""
+                         : gone_ + " is gone: the scene is shown as it was, and read again once it is back";
 }
 
 void SceneViewer::show_on(const std::string& display_server) {

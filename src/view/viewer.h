@@ -44,8 +44,10 @@ class SceneViewer {
     void undo_step();
     void redo_step();
 
-    /// Reads the files again where one changed; asked at most twice a second.
+    /// Reads the files again where one changed, once it is there; asked at most twice a second.
     void look_for_changes();
+    /// Says which of the scene's files was gone when last looked for; empty: none.
+    std::string gone() const;
     void reload_files();
 
     /// From now on a display server shows what is drawn, too. Throws as DisplayStream does.
@@ -77,6 +79,7 @@ class SceneViewer {
     double reach_ = 10;
     std::string message_;
     bool failed_ = false;
+    std::string gone_;
     Playing playing_;
     std::chrono::steady_clock::time_point looked_;
     DrawingThread drawing_;

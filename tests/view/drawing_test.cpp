@@ -285,6 +285,84 @@ TEST_CASE("scripts are refused at the step that is none", "[view]") {
     CHECK(has(refused(R"([{"orbit": [1]}])"), "2 numbers"));
     CHECK(has(refused(R"([{"frames": 3}])"), "without an action"));
     CHECK(refused(R"([{"dolly": 0.5, "frames": 3}, {"wait": "done"}])").empty());
+
+    for (const std::string bad :
+         {R"({"wait": -5})", R"({"wait": 1e4})", R"({"wait": "dome"})", R"({"show": {"n": 0}})",
+          R"({"show": {"n": 1025}})", R"({"show": {"n": 2.5}})", R"({"show": {"maxError": 0}})",
+          R"({"show": {"wipe": 1.5}})", R"({"show": {"scale": -1}})", R"({"show": {"elevation": 90}})",
+          R"({"show": {"distance": 0}})", R"({"orbit": [1, 2], "frames": 0})",
+          R"({"orbit": [1, 2], "frames": 1.5})", R"({"turntable": 0})", R"({"dolly": 0})", R"({"undo": 0})",
+          R"({"redo": 1e9})", R"({"random": -1})"}) {
+        INFO(bad);
+        const std::string said = refused(R"([{"wait": 0}, )" + bad + "]");
+        CHECK(has(said, "steps.json: /steps/1: "));
+        CHECK((has(said, "out of range") || has(said, "no whole number") || has(said, "needs 1 number")));
+    }
+    CHECK(refused(R"([{"wait": 600}, {"show": {"n": null, "wipe": 1, "maxError": null}}, {"undo": 200}])")
+              .empty());
+}
+
+TEST_CASE("a script's time is a frame of the scene's animation, or bad input", "[view]") {
+    const std::string folder = trilens_test::scratch_dir("view_time");
+    const auto said = [](SceneViewer& viewer, const std::string& time) -> std::string {
+        Script script("steps.json", R"([{"wait": "picture"}, {"time": )" + time + "}]");
+        try {
+            while (script.advance(viewer)) {
+            }
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    SceneViewer still(small_request(folder));
+    CHECK(has(said(still, "1"), "steps.json: /steps/1: time: the scene has no animation"));
+    std::ofstream(folder + "/moves.json") << R"({"version": 1, "film": {"width": 16, "height": 12},
+        "cameras": [{"name": "c", "yfov": 40, "lookAt": {"eye": [0, 0, 4], "at": [0, 0, 0]}}],
+        "materials": [{"name": "chrome", "metallicFactor": 1}],
+        "meshes": [{"name": "ball", "role": "optic", "material": "chrome",
+                    "primitive": {"type": "sphere", "radius": 1}}],
+        "animation": {"fps": 24, "tracks": [{"target": "/meshes/0/primitive/radius",
+                      "keys": [{"frame": 2, "value": 1}, {"frame": 8, "value": 0.5}]}]}})";
+    SceneViewer moves(SceneRequest{folder + "/moves.json", {}, 0});
+    CHECK(said(moves, "2").empty());
+    CHECK(said(moves, "8").empty());
+    CHECK(moves.settings().time == 8);
+    CHECK(has(said(moves, "1e9"), "steps.json: /steps/1: time: 1e+09 is out of range: 2 to 8"));
+    CHECK(has(said(moves, "1.9"), "out of range"));
+    CHECK(moves.settings().time == 8);
+}
+
+TEST_CASE("the viewer says that its scene's file is gone, and reads it again once it is back", "[view]") {
+    const std::string folder = trilens_test::scratch_dir("view_gone");
+    const SceneRequest request = small_request(folder);
+    SceneViewer viewer(request);
+    const auto look = [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(510));
+        viewer.look_for_changes();
+    };
+    const std::string away = request.file + ".away";
+    look();
+    CHECK(viewer.gone().empty());
+    std::filesystem::rename(request.file, away);
+    look();
+    CHECK(has(viewer.gone(), request.file + " is gone"));
+    viewer.move({CameraMove::Kind::kOrbit, {10, 0, 0}});
+    CHECK(has(viewer.gone(), "is gone"));  // it goes on, and says so still
+    CHECK(viewer.error().empty());
+    std::filesystem::rename(away, request.file);
+    look();
+    CHECK(viewer.gone().empty());
+    CHECK(has(viewer.message(), request.file + " is back"));
+
+    std::filesystem::remove(request.file);
+    look();
+    CHECK(has(viewer.gone(), "is gone"));
+    Json other = *viewer.session().now.scene;
+    other["film"]["spp"] = 3;
+    std::ofstream(request.file) << other.dump();
+    look();
+    CHECK(viewer.gone().empty());
+    CHECK(viewer.scene().at("film").at("spp") == 3);
 }
 
 TEST_CASE("a script turns the camera, saves the scene as it then is, and random hands break nothing",

@@ -41,6 +41,10 @@ void messages(const SceneViewer& viewer) {
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.45f, 0.4f, 1));
         ImGui::TextWrapped("%s", error.c_str());
         ImGui::PopStyleColor();
+    } else if (!viewer.gone().empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.85f, 0.4f, 1));
+        ImGui::TextWrapped("%s", viewer.gone().c_str());
+        ImGui::PopStyleColor();
     } else if (!viewer.message().empty()) {
         ImGui::TextWrapped("%s", viewer.message().c_str());
     } else if (drawn && !drawn->warnings.empty()) {

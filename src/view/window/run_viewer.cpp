@@ -270,7 +270,9 @@ Answer run_viewer(const ViewOptions& options, Console& console) {
     }
     viewer.drawing().notify([] { GlScreen::wake(); });
     while (!screen->wants_close() && !stop_requested()) {
+        const std::string was_gone = viewer.gone();
         viewer.look_for_changes();
+        if (!viewer.gone().empty() && viewer.gone() != was_gone) console.warn(viewer.gone());
         viewer.advance();
         // Where nothing moves, neither user nor picture, the window sleeps.
         screen->take_input(viewer.is_playing() || ImGui::IsAnyMouseDown() ? 0.004 : 0.25);
