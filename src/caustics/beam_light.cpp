@@ -41,6 +41,7 @@ constexpr double kDividingShare = 0.2, kBorderShare = 0.6;
 BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
                      const std::vector<std::vector<Vec3>>& outlines, const Progress& progress)
     : space_(space), source_(source), tolerance_(params.tolerance) {
+    beams_.divides = space.optics->fresnel;
     std::vector<std::pair<Id, LightWindow>> windows;
     for (std::size_t i = 0; i < outlines.size(); ++i)
         if (!outlines[i].empty())

@@ -38,6 +38,32 @@ TEST_CASE("light that a closed mirror holds stops after maxDepth, and never come
     CHECK(map.warnings[0].find("after maxDepth 4") != std::string::npos);
 }
 
+TEST_CASE("a lamp in a block of glass gives off the light that leaves it, and no ray slips out at an edge",
+          "[laws][law][caustics]") {
+    // Along each axis a ray in a box keeps its cosine: it leaves through faces across an axis to which it is
+    // nearer than the critical angle, unless none is, and without Fresnel's law by all of its light.
+    const double cosine = std::sqrt(1 - 1 / (1.5 * 1.5)), leaving = 6 * 2 * 3.14159265358979 * (1 - cosine);
+    for (const double height : {0.5, 2.0})
+        for (const bool turned : {false, true}) {
+            const std::string block =
+                R"({"name": "block", "role": "optic", "material": "glass", "resolution": 4,
+                "subdivisionScheme": "bilinear", "points": [[-1, -1, -1], [-1, -1, 1], [-1, 1, -1], [-1, 1, 1],
+                    [1, -1, -1], [1, -1, 1], [1, 1, -1], [1, 1, 1]], "faceVertexCounts": [4, 4, 4, 4, 4, 4],
+                "faceVertexIndices": [0, 1, 3, 2, 4, 6, 7, 5, 0, 4, 5, 1, 2, 3, 7, 6, 0, 2, 6, 4, 1, 5, 7, 3],
+                "transform": {"translate": [0, 1.5, 0], "scale": [1, )" +
+                fmt::format("{}", height / 2) + R"(, 0.8], "rotate": {"axis": [0, 1, 0], "angle": )" +
+                (turned ? "20" : "0") + "}}}";
+            const auto world =
+                lit_world(block, R"({"type": "point", "position": [0.2, 1.55, 0.1], "intensity": 1})");
+            Scene scene = world->scene;
+            scene.render.fresnel = false, scene.render.max_depth = 8;
+            const CausticMap map = make_caustic_map(*make_world(scene, ignore), onto_object(0, 8));
+            INFO(height << (turned ? ", turned" : ""));
+            CHECK(map.flux_in.y == Approx(4 * 3.14159265358979).epsilon(1e-3));
+            CHECK(map.flux_on_objects.y + map.flux_away.y == Approx(leaving).epsilon(1e-3));
+        }
+}
+
 TEST_CASE("what a map says that ends on a floor comes to it where Fresnel's weights are steep",
           "[laws][law][caustics]") {
     const auto world = lit_world(R"({"name": "ball", "role": "optic", "material": "dim", "resolution": 8,

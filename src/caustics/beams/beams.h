@@ -53,6 +53,8 @@ struct Beams {
     std::vector<LightWindow> windows;
     // Light that comes to the first optics, by what happens there.
     std::map<std::pair<Id, Event>, Vec3> arriving;
+    bool divides =
+        true;  // whether glass reflects a part of each ray, or each goes one way (no Fresnel's law)
 
     /// Light that leaves the last optic of each history (of `histories`): lumen, or watt, as the light's
     /// intensity has it.

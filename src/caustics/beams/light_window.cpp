@@ -16,13 +16,22 @@ std::array<Vec3, 2> across(const Vec3& axis) {
     return {u, cross(axis, u)};
 }
 
+/// Around the source, the sides of a cube that is turned a little, so that none of its edges, or their
+/// divisions, lies along a box or a wall that is not: where a corner falls on an edge of glass, its ray slips
+/// out between two faces.
 std::vector<LightWindow> six_windows(const Vec3& origin) {
+    constexpr double kTurn = 0.03;  // radians
+    const Vec3 about = normalize(Vec3(1, 2, 3.5));
+    const auto turned = [&](const Vec3& v) {  // Rodrigues' formula
+        return std::cos(kTurn) * v + std::sin(kTurn) * cross(about, v) +
+               (1 - std::cos(kTurn)) * dot(about, v) * about;
+    };
     std::vector<LightWindow> windows;
     for (int k = 0; k < 3; ++k)
         for (const double side : {-1.0, 1.0}) {
             Vec3 axis(0), u(0), v(0);
             axis[k] = side, u[(k + 1) % 3] = 1, v[(k + 2) % 3] = 1;
-            windows.push_back({false, origin, axis, u, v});
+            windows.push_back({false, origin, turned(axis), turned(u), turned(v)});
         }
     return windows;
 }
