@@ -135,6 +135,8 @@ void add_spot(const Spot& spot, double height, Answer& answer, Console& console)
 void warn_of(const LensPrescription& lens, LensSection section, Console& console) {
     for (const LensRow& row : lens.rows)
         if (outreaches_terms(row.side)) console.warn(lens.file + ": " + row.place + ": " + kOutreachesTerms);
+    for (const LensFault& fault : lens_faults(lens))
+        console.warn(lens.file + ": " + lens.rows[fault.row].place + ": " + fault.what);
     if (!is_centred(lens))
         console.warn("first order and Seidel's sums take its surfaces as if none were tilted or decentred");
     if (section == LensSection::kX)

@@ -318,6 +318,7 @@ std::vector<LensElement> lens_elements(const LensPrescription& lens) {
         body.pose = poses[i] * body.pose;
         elements.push_back(std::move(body));
     }
+    for (const LensFault& fault : lens_faults(lens)) fail(lens, lens.rows[fault.row], fault.what);
     return elements;
 }
 

@@ -115,6 +115,17 @@ std::size_t stop_row(const LensPrescription& lens);
 /// kLeastRimRoom), or an obscuration of which no shell can be made (see lens_obscurations).
 void check_prescription(const LensPrescription& lens);
 
+/// Why no bodies can be made of a lens: `what` holds of the row and what comes next.
+struct LensFault {
+    std::size_t row = 0;
+    std::string what = {};
+};
+
+/// Glass whose sides no lens can have (see lens_fault), and lenses that stand in the next one: within the
+/// rims of both, their sides cross in the air between them. What has no aperture, is tilted against the next
+/// surface or has a mirror before the next lens is not looked at. Of a checked prescription.
+std::vector<LensFault> lens_faults(const LensPrescription& lens);
+
 /// A body of a lens, of glass from row `first` to the next, or behind a mirror. Its front's vertex is the
 /// origin of its frame.
 struct LensElement {
@@ -129,7 +140,8 @@ struct LensElement {
 /// common. A mirror's body is flat behind, and as thick there as a quarter of its aperture; on glass
 /// (Mangin's) it has a side in common with it. Throws InputError with the place of a row that has no
 /// aperture, of which no body can be made (see lens_fault), of glass whose sides are tilted against each
-/// other, and of a mirror on glass that light leaves by another side than it came in by.
+/// other, of a mirror on glass that light leaves by another side than it came in by, and of a lens that
+/// stands in the next one (see lens_faults).
 std::vector<LensElement> lens_elements(const LensPrescription& lens);
 
 /// Corners of a ring of an obscuration's shell; it has a quarter as many rings.

@@ -261,3 +261,21 @@ TEST_CASE("Messages of libraries are told as ours, with the file", "[cli]") {
     CHECK(obj.exit_code == 0);
     CHECK(obj.err.find("the material library '" + folder + "/.' is a folder") != std::string::npos);
 }
+
+TEST_CASE("trilens lens warns of sides that cross, in glass and in the air", "[cli][lens]") {
+    const std::string folder = scratch_dir("cli_lens_crossing");
+    const auto warned = [&](const std::string& surfaces, const std::string& what) {
+        const std::string lens = write_file(folder, "lens.json", "{\"surfaces\": [" + surfaces + "]}");
+        const CommandRun run = run_trilens("lens " + lens);
+        INFO(run.err);
+        CHECK(run.exit_code == 0);
+        return run.err.find("warning: " + lens + ": " + what) != std::string::npos;
+    };
+    CHECK(
+        warned(R"({"radius":20,"thickness":1,"glass":"N-BK7","aperture":15},{"radius":-20,"aperture":15})",
+               "/surfaces/0: from here to the next surface is no lens: its rims have no edge between them"));
+    CHECK(warned(
+        R"({"radius":40,"thickness":6,"glass":"N-BK7","aperture":10},{"radius":30,"thickness":0.1,"aperture":10},
+                    {"radius":60,"thickness":5,"glass":"N-SF11","aperture":10},{"radius":-60,"aperture":10})",
+        "/surfaces/1: the next lens stands in this one"));
+}

@@ -45,6 +45,22 @@ LensPrescription singlet(const LensSide& front, const LensSide& back) {
     return lens;
 }
 
+/// Two lenses with sides of such radii next to each other, whose rims lie at 10; along the axis, or behind a
+/// flat mirror and against it (sense -1).
+LensPrescription neighbours(double rear, double front, double air, double sense = 1) {
+    const auto side = [&](double radius) { return LensSide{.curvature = sense / radius, .aperture = 10}; };
+    const Glass glass = find_glass("N-BK7", "", "");
+    LensPrescription lens{"pair", "pair", {}};
+    lens.rows = {{side(40), sense * 6, glass, false, "line 1"},
+                 {side(rear), sense * air, {}, false, "line 2"},
+                 {side(front), sense * 5, glass, false, "line 3"},
+                 {side(-60), 0, {}, false, "line 4"}};
+    if (sense > 0) return lens;
+    LensRow mirror{.side = {.aperture = 10}, .thickness = -20, .place = "line 0", .mirror = true};
+    lens.rows.insert(lens.rows.begin(), mirror);
+    return lens;
+}
+
 }  // namespace
 
 TEST_CASE("published lenses have their published focal lengths, to the tables' digits", "[lens][oracle]") {
@@ -245,4 +261,37 @@ TEST_CASE("prescriptions of what is no lens are refused with the place of the ro
     CHECK_THROWS_AS(first_order(afocal), InputError);
     CHECK_THROWS_AS(spot_of(lens, {.rings = 0}), UsageError);
     CHECK_THROWS_AS(spot_of(lens, {.field_degrees = 90}), UsageError);
+}
+
+TEST_CASE("a lens that stands in the next one is no pair of bodies", "[lens][bad-input]") {
+    const std::string fault =
+        "the next lens stands in this one: within their rims their sides cross in the air";
+    // At the rim the rear side of radius 30 lies 1.716 behind its vertex, the front one of radius 60 only
+    // 0.839.
+    const double needed = (30 - std::sqrt(800.0)) - (60 - std::sqrt(3500.0));
+    for (const double sense : {1.0, -1.0}) {
+        INFO(sense);
+        const LensPrescription crossing = neighbours(30, 60, needed - 0.01, sense);
+        CHECK(message_of(crossing) == "pair: line 2: " + fault);
+        REQUIRE(lens_faults(crossing).size() == 1);
+        CHECK(lens_faults(crossing)[0].row == (sense > 0 ? 1u : 2u));
+        CHECK(message_of(neighbours(30, 60, needed + 0.01, sense)).empty());
+        CHECK(message_of(neighbours(60, 30, 0.1, sense)).empty());
+        CHECK(message_of(neighbours(30, 30, 0, sense)).empty());  // they touch
+    }
+    // A stop in the air between them, and what has no rims, or is tilted.
+    LensPrescription stopped = neighbours(30, 60, 0.05);
+    stopped.rows.insert(stopped.rows.begin() + 2,
+                        LensRow{.thickness = 0.05, .stop = true, .place = "line 2.5"});
+    CHECK(message_of(stopped) == "pair: line 2: " + fault);
+    LensPrescription rimless = neighbours(30, 60, 0.1), tilted = rimless;
+    rimless.rows[1].side.aperture = 0;
+    CHECK(lens_faults(rimless).empty());
+    tilt_row(tilted.rows[2], {.degrees = {1, 0, 0}});
+    CHECK(lens_faults(tilted).empty());
+    // Sides of one glass.
+    LensPrescription thin =
+        singlet({.curvature = 1 / 20., .aperture = 15}, {.curvature = -1 / 20., .aperture = 15});
+    REQUIRE(lens_faults(thin).size() == 1);
+    CHECK(message_of(thin) == "singlet: line 1: " + lens_faults(thin)[0].what);
 }
