@@ -361,8 +361,7 @@ TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]")
     for (const double x : kOddNumbers)
         for (int field = 0; field < 14; ++field) {
             LensPrescription lens{"odd", "odd", {}};
-            lens.rows = {{{0.02, 0, {}, 10}, 4, {"glass", 1.5, 60}, true},
-                         {{-0.02, 0, {}, 10}, 0, {}, false}};
+            lens.rows = {{{0.02, 0, {}, 10}, 4, {"glass", 1.5, 60}, true}, {{-0.02, 0, {}, 10}}};
             LensRow& row = lens.rows[0];
             const std::array<double*, 12> numbers{&row.side.curvature,
                                                   &row.side.conic,
@@ -390,6 +389,7 @@ TEST_CASE("lenses of numbers that are none are refused", "[trilens][bad-input]")
             only_errors("imaging_section", [&] { imaging_section(lens); });
             only_errors("lens_obscurations", [&] { lens_obscurations(lens); });
             only_errors("index_at", [&] { index_at(row.glass, SpectralLine::kF); });
+            only_errors("lens_faults", [&] { lens_faults(lens); });
             only_errors("lens_elements", [&] { lens_elements(lens); });
             only_errors("first_order", [&] { first_order(lens); });
             only_errors("paraxial_ray", [&] { paraxial_ray(lens, {x, x}); });
