@@ -240,13 +240,17 @@ void bind_image(py::module_& module) {
             "where the\nfile cannot be written.");
     module.def(
         "count_regions",
-        [](const HeldImage& held, std::size_t least) {
-            return PythonCall().run([&] { return count_regions(held.image, least); });
+        [](const HeldImage& held, std::int64_t least) {
+            if (least < 0) throw UsageError("least is 0 or more pixels, not " + std::to_string(least));
+            return PythonCall().run(
+                [&] { return count_regions(held.image, static_cast<std::size_t>(least)); });
         },
         py::arg("image"), py::arg("least") = kSmallestRegion,
         "How many separate shapes stand before the environment: regions of at least least pixels that touch "
         "by\n"
-        "sides or corners and whose alpha (channel A) is above 0. Raises InputError for an image without A.");
+        "sides or corners and whose alpha (channel A) is above 0. Raises InputError for an image without A, "
+        "UsageError\n"
+        "for a negative least.");
     module.def(
         "read_image",
         [](const std::filesystem::path& file) {

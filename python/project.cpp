@@ -276,7 +276,7 @@ void bind_project(RendererClass& renderer) {
         [](const Renderer& self, const std::optional<Doubles>& points, int resolution,
            const std::optional<std::string>& camera, const std::optional<Doubles>& directions,
            const std::optional<std::string>& path, const std::string& search, bool refine, bool visibility,
-           const py::object& derivatives, std::size_t max_images, double min_weight,
+           const py::object& derivatives, std::int64_t max_images, double min_weight,
            const std::optional<py::object>& start, const py::object& progress) {
             ProjectRequest request;
             request.frame = frame_params(self, resolution, camera);
@@ -285,7 +285,9 @@ void bind_project(RendererClass& renderer) {
             request.refine = refine;
             request.visibility = visibility;
             if (path) request.path = EventWord(*path);
-            request.max_images = max_images;
+            if (max_images < 0)
+                throw UsageError("max_images is 0 or more, not " + std::to_string(max_images));
+            request.max_images = static_cast<std::size_t>(max_images);
             request.min_weight = min_weight;
             return project(self, {points, directions, start, derivatives}, request, progress);
         },

@@ -94,14 +94,33 @@ struct Lengths {
     LensPrimitive lens;
 };
 
-/// (radius, aperture, conic, coefficients of r^2, r^4, ...), the last two may be left out; or as scenes have
-/// it.
-using Side = std::variant<py::dict, std::vector<double>>;
+/// (radius, aperture, conic, coefficients of r^2, r^4, ...), the last two may be left out, the coefficients
+/// one after the other or as a sequence of their own; or as scenes have it.
+using Side = std::variant<py::dict, std::vector<std::variant<double, std::vector<double>>>>;
+
+/// All numbers in a row. Throws UsageError for a sequence in another place than the coefficients'.
+std::vector<double> numbers_of_side(const Side& given, const char* name) {
+    std::vector<double> numbers;
+    const auto& parts = std::get<std::vector<std::variant<double, std::vector<double>>>>(given);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const auto* const list = std::get_if<std::vector<double>>(&parts[i]);
+        if (!list) {
+            numbers.push_back(std::get<double>(parts[i]));
+            continue;
+        }
+        if (i != 3 || parts.size() > 4)
+            throw UsageError(
+                std::string(name) +
+                " is (radius, aperture, conic, coefficients): numbers, and at its end a sequence");
+        numbers.insert(numbers.end(), list->begin(), list->end());
+    }
+    return numbers;
+}
 
 LensSide lens_side(const Side& given, const char* name) {
     if (const auto* const keys = std::get_if<py::dict>(&given))
         return parse_lens_side(json_text(*keys, py::none(), {name}), name);
-    const auto& numbers = std::get<std::vector<double>>(given);
+    const std::vector<double> numbers = numbers_of_side(given, name);
     if (numbers.size() < 2 || numbers.size() > 3 + kAsphereTerms)
         throw UsageError(std::string(name) + " is (radius, aperture), then conic and up to " +
                          std::to_string(kAsphereTerms) + " coefficients");

@@ -190,3 +190,5 @@ def test_regions_are_the_shapes_before_the_environment():
     assert (trilens.count_regions(image), trilens.count_regions(image, 1), trilens.count_regions(image, least=25)) == (2, 3, 1)
     with pytest.raises(trilens.InputError):
         trilens.count_regions(trilens.Image.from_arrays({"R": alpha}))
+    with pytest.raises(trilens.UsageError, match="least is 0 or more pixels, not -1"):
+        trilens.count_regions(image, -1)

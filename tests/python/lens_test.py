@@ -61,6 +61,16 @@ def test_a_lens_primitive_has_its_sides():
         trilens.primitive_surface("lens", front=(1, 1))
     with pytest.raises(trilens.UsageError, match="front is"):
         trilens.primitive_surface("lens", front=(1,))
+    # Coefficients one after the other, and as a sequence.
+    flat, nested = (
+        trilens.primitive_surface("lens", front=side) for side in [(3, 1, -0.5, 0, 0.01), (3, 1, -0.5, [0, 0.01])]
+    )
+    places = [(0.2, 0.3), (0.9, 0.4)]
+    for face in range(flat.face_count):
+        assert np.array_equal(flat.eval(face, places)["position"], nested.eval(face, places)["position"])
+    for side in [(3, 1, [0, 0.01]), (3, 1, -0.5, [0], 0.01), ([3], 1), (3, 1, 0, [0] * 99)]:
+        with pytest.raises(trilens.UsageError, match="front is"):
+            trilens.primitive_surface("lens", front=side)
 
 
 def front_points(front):

@@ -134,6 +134,8 @@ def test_bounds_of_images_and_weight():
     points = around(3, 11)
     every = renderer.project(points)
     few = renderer.project(points, max_images=2)
+    with pytest.raises(trilens.UsageError, match="max_images is 0 or more, not -1"):
+        renderer.project(points, max_images=-1)
     assert np.bincount(few["point"]).max() == 2 and not few["complete"].any()
     for p in range(len(points)):
         strongest = np.sort(every["weight"][every["point"] == p].sum(axis=1))[-2:]

@@ -141,6 +141,7 @@ TEST_CASE("a CODE V sequence is read in radii and in curvatures, over lines and 
         "A -2D-6; B 1e-9\n  CIR EDG 9.5\nSI 0 0\nGO\n";
     const LensPrescription lens = parse_code_v(text, "a.seq");
     REQUIRE(lens.rows.size() == 2);
+    CHECK(parse_code_v(replaced(text, "'one'", "\"one\""), "a.seq").name == lens.name);
     CHECK(lens.rows[0].glass.name == "N-BK7");
     CHECK(lens.rows[0].side.curvature == 0.02);
     CHECK(lens.rows[0].stop);

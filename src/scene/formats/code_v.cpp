@@ -123,7 +123,7 @@ class SequenceReader : LensLines {
             in_private_ = true;
         } else if (key == "TIT" || key == "TITLE") {
             lens_.name = rest_of_line(command, words[0]);
-            std::erase(lens_.name, '\'');
+            std::erase_if(lens_.name, [](char letter) { return letter == '\'' || letter == '"'; });
         } else if (key == "CUM") {
             by_curvature_ = true;
         } else if (key == "RDM") {
