@@ -54,7 +54,7 @@ const char* const kCamerasExample = R"json({
     { "name": "blue", "baseColorFactor": [0.1, 0.22, 0.62] }
   ],
   "meshes": [
-    { "name": "ball", "role": "optic", "material": "chrome", "resolution": 16,
+    { "name": "ball", "role": "optic", "material": "chrome", "resolution": 20,
       "primitive": { "type": "sphere", "center": [0, 1, 0], "radius": 1 } },
     // Floor, ceiling, back and front.
     { "name": "room", "role": "object", "material": "plaster",
