@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -20,6 +21,9 @@ struct KeyRule {
     Json schema;     // of the value; unused for an index
     std::string of;  // an index: the pointer of the array whose entries it counts
 };
+
+/// A factor of 1, as single precision rounds it.
+constexpr double kOne = 1 + 1e-6;
 
 const Json kAnyList{{"type", "array"}}, kAnyObject{{"type", "object"}}, kAnyInteger{{"type", "integer"}};
 
@@ -128,34 +132,36 @@ std::vector<KeyRule> rules_of_materials() {
     const std::string material = "/materials/*/", base = material + "pbrMetallicRoughness/",
                       extension = material + "extensions/KHR_materials_";
     const Json factor = number_in(0, 1), wrap = one_of_codes({33071, 33648, 10497});
-    std::vector<KeyRule> rules{{material + "name", any_text(), ""},
-                               {base + "baseColorFactor", several(4, factor), ""},
-                               {base + "metallicFactor", factor, ""},
-                               {base + "roughnessFactor", factor, ""},
-                               {material + "normalTexture/scale", any_number(), ""},
-                               {material + "occlusionTexture/strength", factor, ""},
-                               {material + "emissiveFactor", several(3, factor), ""},
-                               {material + "alphaMode", word_of({"OPAQUE", "MASK", "BLEND"}), ""},
-                               {material + "alphaCutoff", {{"type", "number"}, {"minimum", 0}}, ""},
-                               {material + "doubleSided", yes_or_no(), ""},
-                               {extension + "ior/ior", any_number(), ""},
-                               {extension + "transmission/transmissionFactor", any_number(), ""},
-                               {extension + "volume/thicknessFactor", any_number(), ""},
-                               {extension + "volume/attenuationColor", several(3, any_number()), ""},
-                               {extension + "volume/attenuationDistance", any_number(), ""},
-                               {extension + "dispersion/dispersion", any_number(), ""},
-                               {extension + "specular/specularFactor", any_number(), ""},
-                               {extension + "specular/specularColorFactor", several(3, any_number()), ""},
-                               {extension + "emissive_strength/emissiveStrength", any_number(), ""},
-                               {extension + "unlit", kAnyObject, ""},
-                               {"/textures/*/source", {}, "/images"},
-                               {"/textures/*/sampler", {}, "/samplers"},
-                               {"/textures/*/extensions/EXT_texture_webp/source!", {}, "/images"},
-                               {"/images/*/uri", any_text(), ""},
-                               {"/images/*/bufferView", {}, "/bufferViews"},
-                               {"/samplers/*/wrapS", wrap, ""},
-                               {"/samplers/*/wrapT", wrap, ""},
-                               {"/samplers/*/magFilter", one_of_codes({9728, 9729}), ""}};
+    std::vector<KeyRule> rules{
+        {material + "name", any_text(), ""},
+        {base + "baseColorFactor", several(4, any_number()), ""},
+        {base + "baseColorFactor/*", factor, ""},
+        {base + "metallicFactor", factor, ""},
+        {base + "roughnessFactor", factor, ""},
+        {material + "normalTexture/scale", any_number(), ""},
+        {material + "occlusionTexture/strength", factor, ""},
+        {material + "emissiveFactor", several(3, {{"type", "number"}, {"minimum", 0}}), ""},
+        {material + "alphaMode", word_of({"OPAQUE", "MASK", "BLEND"}), ""},
+        {material + "alphaCutoff", {{"type", "number"}, {"minimum", 0}}, ""},
+        {material + "doubleSided", yes_or_no(), ""},
+        {extension + "ior/ior", any_number(), ""},
+        {extension + "transmission/transmissionFactor", any_number(), ""},
+        {extension + "volume/thicknessFactor", any_number(), ""},
+        {extension + "volume/attenuationColor", several(3, any_number()), ""},
+        {extension + "volume/attenuationDistance", any_number(), ""},
+        {extension + "dispersion/dispersion", any_number(), ""},
+        {extension + "specular/specularFactor", any_number(), ""},
+        {extension + "specular/specularColorFactor", several(3, any_number()), ""},
+        {extension + "emissive_strength/emissiveStrength", any_number(), ""},
+        {extension + "unlit", kAnyObject, ""},
+        {"/textures/*/source", {}, "/images"},
+        {"/textures/*/sampler", {}, "/samplers"},
+        {"/textures/*/extensions/EXT_texture_webp/source!", {}, "/images"},
+        {"/images/*/uri", any_text(), ""},
+        {"/images/*/bufferView", {}, "/bufferViews"},
+        {"/samplers/*/wrapS", wrap, ""},
+        {"/samplers/*/wrapT", wrap, ""},
+        {"/samplers/*/magFilter", one_of_codes({9728, 9729}), ""}};
     for (const char* texture :
          {"pbrMetallicRoughness/baseColorTexture", "pbrMetallicRoughness/metallicRoughnessTexture",
           "normalTexture", "occlusionTexture", "emissiveTexture"})
@@ -177,7 +183,7 @@ class KeyChecker {
   public:
     KeyChecker(const Json& json, const std::string& file) : root_{json, "", file} {}
 
-    void check(const KeyRule& rule) const {
+    void check(const KeyRule& rule) {
         std::string_view steps = rule.place;
         const bool needed = steps.ends_with('!');
         if (needed) steps.remove_suffix(1);
@@ -186,7 +192,7 @@ class KeyChecker {
 
   private:
     /// `steps`: what is left of the rule's place, each step after a slash.
-    void walk(const Node& at, std::string_view steps, const KeyRule& rule, bool needed) const {
+    void walk(const Node& at, std::string_view steps, const KeyRule& rule, bool needed) {
         if (steps.empty()) return rule.of.empty() ? check_value(at, rule.schema) : check_index(at, rule.of);
         const std::size_t end = std::min(steps.find('/', 1), steps.size());
         const std::string step(steps.substr(1, end - 1));
@@ -207,28 +213,39 @@ class KeyChecker {
         // glTF 2.0, section 2.7; the library takes such a number for none.
         if (schema.value("type", "") == "integer" && at.json.is_number_float())
             at.fail("is written " + at.json.dump() + ": must be a whole number without a fraction");
+        if (at.json.is_number_float() && at.json > 1.0 && at.json <= kOne &&
+            schema.value("maximum", 0.0) == 1)
+            return;
         if (const std::optional<Problem> problem = find_problem(at.json, schema))
             fail_at(at.file, at.place + problem->place, problem->message);
     }
 
-    void check_index(const Node& at, const std::string& of) const {
-        static const KeyRule list{"", kAnyList, ""};
-        walk(root_, of, list, false);
+    void check_index(const Node& at, const std::string& of) {
+        const std::size_t count = count_of(of);
         check_value(at, kAnyInteger);
-        const Json::json_pointer array(of);
-        const std::size_t count = root_.json.contains(array) ? root_.json.at(array).size() : 0;
         if (!at.json.is_number_unsigned() || at.json.get<std::uint64_t>() >= count)
             at.fail(at.json.dump() + " is out of range: there are " + std::to_string(count) + " " +
                     of.substr(of.rfind('/') + 1));
     }
 
+    std::size_t count_of(const std::string& of) {
+        const auto [known, is_new] = counts_.try_emplace(of, 0);
+        if (is_new) {
+            walk(root_, of, {"", kAnyList, ""}, false);
+            const Json::json_pointer array(of);
+            known->second = root_.json.contains(array) ? root_.json.at(array).size() : 0;
+        }
+        return known->second;
+    }
+
     Node root_;
+    std::map<std::string, std::size_t> counts_;  // by the array's pointer
 };
 
 }  // namespace
 
 void check_gltf_keys(const Json& json, const std::string& file) {
-    const KeyChecker checker(json, file);
+    KeyChecker checker(json, file);
     for (const KeyRule& rule : all_key_rules()) checker.check(rule);
 }
 
