@@ -142,6 +142,8 @@ TEST_CASE("glTF values out of range are refused with their places", "[scene][bad
           ": " + base + "/baseColorFactor/0: 2 is out of range: must be at most 1");
     CHECK(error(base + "/baseColorFactor/0", 1.0000001192) == "");  // a 1 of single precision
     CHECK(error("/materials/0/emissiveFactor/2", 4) == "");         // as many exporters write it
+    CHECK(error("/materials/0/emissiveFactor/2", 1e300) ==
+          ": /materials/0/emissiveFactor/2: 1e+300 is out of range: must be at most 1e+30");
     CHECK(error(base + "/metallicFactor", -3) ==
           ": " + base + "/metallicFactor: -3 is out of range: must be at least 0");
     CHECK(error("/materials/0/emissiveFactor/2", -1) ==

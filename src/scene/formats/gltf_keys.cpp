@@ -140,7 +140,7 @@ std::vector<KeyRule> rules_of_materials() {
         {base + "roughnessFactor", factor, ""},
         {material + "normalTexture/scale", any_number(), ""},
         {material + "occlusionTexture/strength", factor, ""},
-        {material + "emissiveFactor", several(3, {{"type", "number"}, {"minimum", 0}}), ""},
+        {material + "emissiveFactor", several(3, number_in(0, kLargestCoordinate)), ""},
         {material + "alphaMode", word_of({"OPAQUE", "MASK", "BLEND"}), ""},
         {material + "alphaCutoff", {{"type", "number"}, {"minimum", 0}}, ""},
         {material + "doubleSided", yes_or_no(), ""},

@@ -62,7 +62,7 @@ class MaterialReader {
     void read_base() {
         const tinygltf::PbrMetallicRoughness& pbr = in_.pbrMetallicRoughness;
         for (int k = 0; k < 3; ++k)
-            out_.material.base_color_factor[k] = pbr.baseColorFactor[static_cast<std::size_t>(k)];
+            out_.material.base_color_factor[k] = factor(pbr.baseColorFactor[static_cast<std::size_t>(k)]);
         write("baseColorFactor", out_.material.base_color_factor);
         Json texture = read_texture(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture");
         if (!texture.is_null()) {
@@ -75,8 +75,8 @@ class MaterialReader {
 
     void read_metal() {
         const tinygltf::PbrMetallicRoughness& pbr = in_.pbrMetallicRoughness;
-        out_.material.metallic_factor = pbr.metallicFactor;
-        out_.material.roughness_factor = pbr.roughnessFactor;
+        out_.material.metallic_factor = factor(pbr.metallicFactor);
+        out_.material.roughness_factor = factor(pbr.roughnessFactor);
         // Unlit is its colour alone.
         if (out_.material.unlit) return;
         out_.written["metallicFactor"] = out_.material.metallic_factor;
@@ -86,7 +86,7 @@ class MaterialReader {
         if (add_texture("normalTexture", in_.normalTexture, "normalTexture"))
             out_.written["normalTexture"]["scale"] = in_.normalTexture.scale;
         if (add_texture("occlusionTexture", in_.occlusionTexture, "occlusionTexture"))
-            out_.written["occlusionTexture"]["strength"] = in_.occlusionTexture.strength;
+            out_.written["occlusionTexture"]["strength"] = factor(in_.occlusionTexture.strength);
         const Json specular = extension("KHR_materials_specular");
         if (specular.is_null()) return;
         const std::string place = at("extensions/KHR_materials_specular");
@@ -95,6 +95,9 @@ class MaterialReader {
         for (const char* key : {"specularTexture", "specularColorTexture"})
             if (specular.contains(key)) out_.written[key] = true;
     }
+
+    /// Of what check_gltf_keys lets pass: a 1 of single precision may be a little more.
+    static double factor(double value) { return std::min(value, 1.0); }
 
     void read_light() {
         Vec3 emissive(0);
@@ -113,7 +116,7 @@ class MaterialReader {
         if (in_.alphaMode.empty() || in_.alphaMode == "OPAQUE") return;
         out_.written["alphaMode"] = in_.alphaMode == "MASK" ? "mask" : "blend";
         const std::vector<double>& factors = in_.pbrMetallicRoughness.baseColorFactor;
-        if (factors[3] != 1) out_.written["alphaFactor"] = factors[3];
+        if (factor(factors[3]) != 1) out_.written["alphaFactor"] = factors[3];
         if (in_.alphaMode == "BLEND" && !in_.doubleSided) out_.written["doubleSided"] = false;
         if (in_.alphaMode != "MASK") return;
         out_.written["alphaCutoff"] = std::min(in_.alphaCutoff, 2.0);  // beyond 1 all is cut away
