@@ -163,3 +163,21 @@ TEST_CASE("glTF values out of range are refused with their places", "[scene][bad
     CHECK(error("/materials/0/normalTexture", {{"scale", 1}}) ==
           ": /materials/0/normalTexture: has no 'index'");
 }
+
+TEST_CASE("glTF factors that single precision rounds past 1 are 1, in the resolved scene too", "[scene]") {
+    const std::string folder = scratch_dir("scene_gltf_rounded");
+    Json rounded = full_gltf(folder);
+    const double one = 1.0000001192;
+    Json& base = rounded["materials"][0]["pbrMetallicRoughness"];
+    base["baseColorFactor"] = {one, one, one, one};
+    base["metallicFactor"] = base["roughnessFactor"] = one;
+    std::ofstream(folder + "/room.gltf") << rounded.dump();
+    const Scene scene = load(folder + "/room.gltf");
+    const Scene again =
+        load_scene_text(scene.resolved, SceneSource("again.json", folder), {}, white_textures());
+    for (const Scene* read : {&scene, &again}) {
+        CHECK(read->materials.at(0).base_color_factor == Vec3(1));
+        CHECK(read->materials.at(0).metallic_factor == 1);
+        CHECK(read->materials.at(0).roughness_factor == 1);
+    }
+}
