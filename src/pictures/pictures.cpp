@@ -297,23 +297,34 @@ std::optional<double> no_data_of(const std::string& file) {
     return OIIO::Strutil::stod(number);
 }
 
-/// Samples that hold nothing become NaN. Shares of the greatest are compared as the numbers that they were.
-void mark_no_data(std::vector<float>& values, double no_data, OIIO::TypeDesc type) {
-    const double scale = type.basetype == OIIO::TypeDesc::UINT8    ? 255
-                         : type.basetype == OIIO::TypeDesc::UINT16 ? 65535
-                                                                   : 1;
-    const auto holds_nothing = [&](float value) {
-        return scale == 1 ? value == static_cast<float>(no_data)
-                          : std::round(static_cast<double>(value) * scale) == no_data;
-    };
-    std::replace_if(values.begin(), values.end(), holds_nothing, std::numeric_limits<float>::quiet_NaN());
+/// Of integers that the library turns into shares; 0 of other numbers. Grey of fewer bits than a byte or two
+/// is spread over these.
+double greatest_of(const OIIO::ImageSpec& spec) {
+    if (spec.format != OIIO::TypeDesc::UINT8 && spec.format != OIIO::TypeDesc::UINT16) return 0;
+    const int all = 8 * static_cast<int>(spec.format.size());
+    const int bits = spec.nchannels == 1 ? spec.get_int_attribute("oiio:BitsPerSample", all) : all;
+    return std::ldexp(1.0, bits > 0 && bits < all ? bits : all) - 1;
+}
+
+/// Samples that hold nothing become NaN.
+void mark_no_data(HeightGrid& heights, const std::string& file) {
+    heights.no_data = no_data_of(file);
+    if (!heights.no_data) return;
+    const auto holds_nothing = [&](float value) { return heights.stands_for(value, *heights.no_data); };
+    std::replace_if(heights.values.begin(), heights.values.end(), holds_nothing,
+                    std::numeric_limits<float>::quiet_NaN());
 }
 
 HeightGrid heights_of(const std::string& file) {
     const std::size_t size = readable_size(file);
     const auto in = open_file(file);
     const OIIO::ImageSpec spec = checked_header(*in, file, size);
-    HeightGrid heights{spec.width, spec.height, spec.nchannels, {}};
+    HeightGrid heights{.columns = spec.width,
+                       .rows = spec.height,
+                       .channels = spec.nchannels,
+                       .values = {},
+                       .greatest = greatest_of(spec),
+                       .is_half = spec.format == OIIO::TypeDesc::HALF};
     if (std::max(heights.columns, heights.rows) > kMostHeightsSide)
         throw InputError(file, "",
                          "has " + std::to_string(heights.columns) + " x " + std::to_string(heights.rows) +
@@ -336,7 +347,7 @@ HeightGrid heights_of(const std::string& file) {
     } catch (const std::bad_alloc&) {
         throw InputError(file, "", "needs more memory than there is");
     }
-    if (const auto no_data = no_data_of(file)) mark_no_data(heights.values, *no_data, spec.format);
+    mark_no_data(heights, file);
     return heights;
 }
 

@@ -28,7 +28,7 @@ HeightSquare::HeightSquare(const HeightGrid& heights, double no_data)
     const auto side = static_cast<std::size_t>(side_);
     values_.resize(side * side);
     const auto is_height = [&](float value) {
-        return std::isfinite(value) && !(static_cast<double>(value) == no_data);
+        return std::isfinite(value) && !heights.stands_for(value, no_data);
     };
     missing_ = static_cast<std::size_t>(std::count_if(heights.values.begin(), heights.values.end(),
                                                       [&](float value) { return !is_height(value); }));

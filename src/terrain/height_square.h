@@ -23,7 +23,7 @@ struct SampleSpacing {
 /// the points there, so that slopes go on. Samples without a height count as 0 and are marked.
 class HeightSquare {
   public:
-    /// What is not finite or equals `no_data` is no height (`no_data` may be NaN: nothing equals it).
+    /// What is not finite or stands for `no_data` is no height (`no_data` may be NaN: nothing does).
     HeightSquare(const HeightGrid& heights, double no_data);
 
     int levels() const { return levels_; }  // n

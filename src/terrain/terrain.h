@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostTerrainTriangles = 40'000'000;
 
 struct TerrainShape {
     Vec3 size{1};                   // along x and z of the whole grid; along y of a value of 1
-    std::optional<double> no_data;  // a value that is no height
+    std::optional<double> no_data;  // a number of the file that is no height
 };
 
 struct Thinning {

@@ -202,3 +202,24 @@ TEST_CASE("samples that a GeoTIFF says hold nothing are no numbers", "[image]") 
             CHECK(std::isnan(heights({0, 1, 255, 12, 13, 14}, 1, 1, "12").at(0, 1)));
         }
 }
+
+TEST_CASE("heights know the numbers of their file", "[image]") {
+    if (!trilens_test::has_program("oiiotool")) TRILENS_SKIP("needs oiiotool");
+    const auto last = [](const std::string& name, const std::string& type, double most, double raw) {
+        const HeightGrid heights = read_heights(ramp(name, type, most));
+        INFO(name << " " << heights.at(4, 0));
+        CHECK(heights.stands_for(heights.at(4, 0), raw));
+        CHECK(!heights.stands_for(heights.at(3, 0), raw));
+        CHECK(!heights.stands_for(heights.at(4, 0), raw + 1));
+    };
+    last("a.png", "uint8", 1, 255);
+    last("b.png", "uint8", 100. / 255, 100);
+    last("c.png", "uint16", 1, 65535);
+    last("d.tif", "uint16", 257. / 65535, 257);
+    last("e.tif", "int16", 1, 32767);
+    last("f.tif", "float", -32768.1, -32768.1);
+    last("g.exr", "half", 0.1, 0.1);
+    const HeightGrid bit = read_heights(ramp("h.tif", "uint1", 1));
+    CHECK(bit.stands_for(bit.at(4, 0), 1));
+    CHECK(!bit.stands_for(bit.at(0, 0), 1));
+}

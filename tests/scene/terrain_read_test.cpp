@@ -220,3 +220,61 @@ TEST_CASE("missing heights and channels that are not read are warned of", "[scen
     CHECK(make_scene_info(scene).meshes[0].terrain->missing_heights == 2);
     CHECK(scene.meshes[0].object.triangles.size() < 2 * 64 - 8);
 }
+
+TEST_CASE("noData is a number of the file, and one that no sample has is warned of", "[scene][terrain]") {
+    HeightGrid bytes{
+        .columns = 3, .rows = 3, .values = {0, 1, 2, 7, 100, 128, 254, 255, 255}, .greatest = 255};
+    for (float& value : bytes.values) value *= 1 / 255.f;
+    const HeightsInFile file(bytes);
+    const auto warnings = [](const HeightsInFile& in, const std::string& number) {
+        std::string all;
+        for (const std::string& warning :
+             in.load(terrain_scene(in.keys(R"(, "noData": )" + number))).warnings)
+            all += warning + "\n";
+        return all;
+    };
+    const std::string none = "/meshes/0/noData: no sample of '" + file.path + "' has that number";
+    for (const char* number : {"0", "2", "7", "254"}) {
+        INFO(number);
+        CHECK(contains(warnings(file, number), "1 samples have no height"));
+        CHECK(!contains(warnings(file, number), none));
+    }
+    for (const char* number : {"3", "-1", "256", "0.00392156862745098", "1.5"}) {
+        INFO(number);
+        CHECK(contains(warnings(file, number), none));
+        CHECK(!contains(warnings(file, number), "no height"));
+    }
+    HeightGrid said = mountains(5, 5);  // the file has said so itself
+    said.values[24] = std::numeric_limits<float>::quiet_NaN();
+    said.no_data = -9999;
+    const HeightsInFile tagged(said);
+    CHECK(!contains(warnings(tagged, "-9999"), "has that number"));
+    CHECK(contains(warnings(tagged, "-9998"), "has that number"));
+    said.no_data = -3.40282346638529e+38;
+    CHECK(!contains(warnings(HeightsInFile(said), "-3.4028234663852886e+38"), "has that number"));
+}
+
+TEST_CASE("noData finds floats to their own precision; numbers beyond 1e30 need it",
+          "[scene][terrain][bad-input]") {
+    const auto missing = [](float sample, const std::string& number) {
+        HeightGrid heights = mountains(5, 5);
+        heights.values[24] = sample;
+        const HeightsInFile file(heights);
+        const Scene scene = file.load(terrain_scene(file.keys(R"(, "noData": )" + number)));
+        return scene.meshes[0].terrain->missing_heights;
+    };
+    CHECK(missing(-32768.1f, "-32768.1") == 1);
+    CHECK(missing(-32768.1f, "-32768.2") == 0);
+    CHECK(missing(-3.4e38f, "-3.4e38") == 1);
+    CHECK(missing(std::numeric_limits<float>::lowest(), "-3.4028234663852886e+38") == 1);
+    CHECK(missing(std::numeric_limits<float>::lowest(), "-3.40282346638529e+38") == 1);
+    CHECK(missing(-std::numeric_limits<float>::infinity(), "-1.7976931348623157e308") == 1);
+
+    HeightGrid heights = mountains(5, 5);
+    heights.values[13] = -3e38f;
+    const HeightsInFile file(heights);
+    for (const char* keys : {"", R"(, "noData": -9999)"})
+        CHECK(contains(file.refusal(terrain_scene(file.keys(keys))),
+                       "/meshes/0/heights: the sample in column 3, row 2 is -3"));
+    CHECK(contains(file.refusal(terrain_scene(file.keys())), "if that is no height, say so by noData"));
+}

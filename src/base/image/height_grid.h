@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace trilens {
@@ -15,11 +16,17 @@ struct HeightGrid {
     int columns = 0, rows = 0;
     int channels = 1;  // of the file; the first is taken
     std::vector<float> values;
+    double greatest = 0;   // of the integers whose shares the values are; 0: they are numbers of the file
+    bool is_half = false;  // numbers of half precision
+    std::optional<double> no_data = {};  // what the file itself says holds nothing: those values are NaN
 
     float at(int column, int row) const {
         return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
                       static_cast<std::size_t>(column)];
     }
+    /// Whether `value` is what the file's number `raw` has become, as far as the file tells numbers apart (a
+    /// float from the next); never for NaN.
+    bool stands_for(float value, double raw) const;
 };
 
 }  // namespace trilens

@@ -1,5 +1,7 @@
 // Objects made of heights: the keys of terrains, and their triangles.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -11,6 +13,11 @@
 #include "terrain/terrain.h"
 
 namespace trilens {
+namespace {
+
+constexpr double kMostNoData = std::numeric_limits<double>::max();
+
+}  // namespace
 
 const std::vector<Field<TerrainSettings>>& terrain_fields() {
     static const std::vector<Field<TerrainSettings>> fields{
@@ -22,9 +29,9 @@ const std::vector<Field<TerrainSettings>>& terrain_fields() {
                 "terrain: along x and z of the whole grid, along y of a height of 1.")
             .without_default(),
         setting(
-            "noData", &TerrainSettings::no_data, ref("number"),
-            "terrain: the value of samples without a height, as those that are not finite are: the triangles "
-            "that touch them are left out.")
+            "noData", &TerrainSettings::no_data, number_in(-kMostNoData, kMostNoData),
+            "terrain: the number of samples without a height, as the file has it (255 for the white of "
+            "8 bits): the triangles that touch them are left out, as those that touch what is not finite.")
             .without_default(),
         setting("heightError", &TerrainSettings::height_error, ref("notNegative"),
                 "terrain: how far along y, before transform, triangles may be from those of all samples; "
@@ -86,6 +93,36 @@ std::shared_ptr<const HeightGrid> read_heights(const Node& node, Terrain& terrai
     return heights;
 }
 
+/// Whether the file says so itself, in as many digits as it likes.
+bool says_too(const HeightGrid& heights, double no_data) {
+    if (!heights.no_data || heights.no_data == no_data) return heights.no_data.has_value();
+    constexpr double kMost = std::numeric_limits<float>::max();
+    const auto said = static_cast<float>(std::clamp(*heights.no_data, -kMost, kMost));
+    return heights.greatest == 0 && heights.stands_for(said, no_data);
+}
+
+/// What a scene's `noData` makes of heights, and values that are none without it.
+void check_numbers(const Node& node, const TerrainSettings& settings, const HeightGrid& heights,
+                   Reading& reading) {
+    const auto holds_nothing = [&](float value) {
+        return node.has("noData") && heights.stands_for(value, settings.no_data);
+    };
+    const std::vector<float>& values = heights.values;
+    if (node.has("noData") && !says_too(heights, settings.no_data) &&
+        std::none_of(values.begin(), values.end(), holds_nothing))
+        reading.warn(node["noData"].place, "no sample of '" + settings.heights + "' has that number");
+    const auto far = std::find_if(values.begin(), values.end(), [&](float value) {
+        return std::isfinite(value) && std::fabs(static_cast<double>(value)) > kLargestCoordinate &&
+               !holds_nothing(value);
+    });
+    if (far == values.end()) return;
+    const auto index = far - values.begin();
+    node["heights"].fail("the sample in column " + std::to_string(index % heights.columns) + ", row " +
+                         std::to_string(index / heights.columns) + " is " +
+                         to_json_value(static_cast<double>(*far)).dump() +
+                         ", beyond 1e30: if that is no height, say so by noData");
+}
+
 /// Of places of a mesh's own frame.
 FilmMoves moves_of(const Transform& world_from_own, const FilmMoves& moves) {
     double stretch = 0;  // no direction is made longer by more: the root of the sum of squares
@@ -133,6 +170,7 @@ void read_terrain(const Node& node, Mesh& mesh, Reading& reading) {
     read_fields(node, terrain_fields(), settings);
     auto terrain = std::make_shared<Terrain>();
     terrain->heights = read_heights(node["heights"], *terrain, reading);
+    check_numbers(node, settings, *terrain->heights, reading);
     TerrainMesh made = triangles_of(node, settings, *terrain->heights, reading);
     terrain->missing_heights = made.missing_heights;
     terrain->whole_triangles = made.whole_triangles;
