@@ -372,12 +372,12 @@ Scene Baker::scene_with(const VertexLight& vertices) const {
     }
     std::vector<char> is_lit(scene.meshes.size());
     for (const RadiosityElement& element : mesh_.elements()) is_lit[element.mesh] = 1;
-    Json json;
-    if (!scene.resolved.empty()) json = resolved_json(scene);
+    Json json = scene.resolved.empty() ? Json() : resolved_json(scene);
     for (Id m = 0; m < scene.meshes.size(); ++m) {
         if (!is_lit[m]) continue;
         ObjectMesh& object = scene.meshes[m].object;
-        const BakedLightRecord record{object.triangles.size(), mesh_.splits(m), std::move(light[m])};
+        const BakedLightRecord record{object.triangles.size(), weighted_corners(object), mesh_.splits(m),
+                                      std::move(light[m])};
         if (!scene.resolved.empty()) json["meshes"][m]["bakedLight"] = baked_light_json(record);
         TriangleSplitter splitter(object);
         for (const TriangleSplit& split : record.splits) splitter.split(split);

@@ -64,11 +64,14 @@ TEST_CASE("file names may end in capitals, and a scene's name ends as one", "[cl
     CHECK(run_trilens("compare " + exr + " " + exr + " -o " + quoted(folder + "/D.PNG")).exit_code == 0);
     CHECK(bytes_of(folder + "/D.PNG").rfind("\x89PNG", 0) == 0);
     CHECK(run_trilens("render " + exr + " -o " + quoted(folder + "/E.exr")).exit_code == 0);
-    const CommandRun wrong =
-        run_trilens("scene convert " + quoted(scene) + " -o " + quoted(folder + "/x.PLY"));
-    CHECK(wrong.exit_code == 2);
-    CHECK(wrong.err.find("ends in .json") != std::string::npos);
-    CHECK(!fs::exists(folder + "/x.PLY"));
+    for (const std::string name : {"x.PLY", "x.txt", "x.json.bak"}) {
+        const CommandRun wrong =
+            run_trilens("scene convert " + quoted(scene) + " -o " + quoted(folder + "/" + name));
+        INFO(name);
+        CHECK(wrong.exit_code == 2);
+        CHECK(wrong.err.find("ends in .json") != std::string::npos);
+        CHECK(!fs::exists(folder + "/" + name));
+    }
 }
 
 TEST_CASE("an image renders again through its own camera, and finds its scene's files from anywhere",

@@ -314,7 +314,8 @@ TEST_CASE("what cannot be baked is refused in words", "[radiosity][cli][bad-inpu
                               {"bake " + room + out + "--hemicube 63", 2, "even"},
                               {"bake " + room + out + "--smallest-size 0.5", 2, "smallest"},
                               {"bake " + room + out + "--plot plot.png", 2, ".svg"},
-                              {"bake " + room + out + "--solver jacobi", 2, "jacobi"}}) {
+                              {"bake " + room + out + "--solver jacobi", 2, "jacobi"},
+                              {"bake " + room + " -o " + folder + "/baked.txt ", 2, "ends in .json"}}) {
         const CommandRun run = run_trilens(bad.arguments + " --progress none");
         INFO(bad.arguments << "\n" << run.err);
         CHECK(run.exit_code == bad.exit_code);
@@ -333,4 +334,10 @@ TEST_CASE("what cannot be baked is refused in words", "[radiosity][cli][bad-inpu
     const CommandRun wrong = run_trilens("render " + other + " -o " + folder + "/o.png");
     CHECK(wrong.exit_code == 3);
     CHECK(wrong.err.find("was baked for a mesh of 9 triangles, but this one has 8") != std::string::npos);
+    const std::string baked = bytes_of(folder + "/baked.json"), point = "[-1,0,-1]";
+    const std::string moved = write_file(folder, "moved.json", replaced(baked, point, "[-1.01,0,-1]"));
+    const CommandRun elsewhere = run_trilens("render " + moved + " -o " + folder + "/o.png");
+    CHECK(elsewhere.exit_code == 3);
+    CHECK(elsewhere.err.find("/bakedLight/corners: the light was baked for a mesh whose") !=
+          std::string::npos);
 }

@@ -74,6 +74,27 @@ TEST_CASE("baked light comes to the corners that its file names", "[scene][baked
     CHECK(baked[1].back[2] == Vec3(1, 2, 3));
 }
 
+TEST_CASE("light of a mesh of as many triangles that lie elsewhere is refused", "[scene][baked]") {
+    const std::string square = lit_square(R"({"triangles": 2, "colors": []})");
+    const ObjectMesh mesh = load_text(square).meshes[0].object;
+    const std::string record = baked_light_json({2, weighted_corners(mesh), {}, {{}, {}}}).dump();
+    const auto refusal = [&](const std::string& from, const std::string& to) {
+        return error_of(replaced(lit_square(record), from, to));
+    };
+    CHECK(refusal("[1,1,0],[0,1,0]]", "[1,1,0],[0,1.00000000000001,0]]").empty());  // as rounding has it
+    CHECK(refusal("\"bakedLight\"", "\"name\": \"m\", \"bakedLight\"") != "");
+    for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+             {"\"faceVertexIndices\": [0,1,2,3]", "\"faceVertexIndices\": [3,2,1,0]"},
+             {"\"faceVertexIndices\": [0,1,2,3]", "\"faceVertexIndices\": [1,2,3,0]"},
+             {"[1,1,0],[0,1,0]],", "[1,1,0],[0,1.00001,0]],"},
+             {"\"bakedLight\"", "\"transform\": {\"translate\": [0,0,1]}, \"bakedLight\""},
+             {"\"bakedLight\"", "\"transform\": {\"scale\": [2,2,2]}, \"bakedLight\""}}) {
+        INFO(to);
+        CHECK(contains(refusal(from, to),
+                       "/meshes/0/bakedLight/corners: the light was baked for a mesh whose"));
+    }
+}
+
 TEST_CASE("baked light that does not fit its mesh is refused with its place", "[scene][baked]") {
     const std::string place = "/meshes/0/bakedLight";
     CHECK(contains(baked_refusal(R"({"triangles": 3, "colors": []})"),

@@ -122,10 +122,9 @@ void check_output(const std::string& output, Console& console) {
 }
 
 void check_scene_output(const std::string& output, Console& console) {
-    for (const char* other :
-         {".exr", ".png", ".svg", ".pdf", ".obj", ".ply", ".stl", ".gltf", ".glb", ".csv"})
-        if (file_ending(output) == other)
-            throw UsageError("the output \"" + output + "\" is a scene file: its name ends in .json");
+    const std::string ending = file_ending(output);
+    if (!is_standard_stream(output) && !ending.empty() && ending != ".json")
+        throw UsageError("the output \"" + output + "\" is a scene file: its name ends in .json");
     check_output(output, console);
 }
 

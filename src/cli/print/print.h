@@ -79,7 +79,7 @@ struct OutputFormat {
 /// OutputError where it could not be written. Before long work.
 void check_output(const std::string& output, Console& console);
 
-/// The same of a scene file. Throws UsageError, too, for a name that ends as files of other kinds do.
+/// The same of a scene file. Throws UsageError, too, for a name with another ending than .json.
 void check_scene_output(const std::string& output, Console& console);
 
 /// The answer for a file that was written while it was drawn.

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "base/util/check.h"
 
 namespace trilens {
 namespace {
 
-constexpr int kDigits = 5;
+constexpr int kDigits = 5, kCornerDigits = 12;
+constexpr double kCornerSlack = 1e-8;  // shares of the mesh's greatest coordinate
 
-double rounded(double value) {
+double rounded(double value, int digits = kDigits) {
     char text[64];
     const auto written =
-        std::to_chars(std::begin(text), std::end(text), value, std::chars_format::scientific, kDigits - 1);
+        std::to_chars(std::begin(text), std::end(text), value, std::chars_format::scientific, digits - 1);
     double back = 0;
     std::from_chars(text, written.ptr, back);
     return back;
@@ -47,6 +49,17 @@ class Palette {
 
 bool is_dark(const std::array<Vec3, 3>& side) {
     return std::all_of(side.begin(), side.end(), [](const Vec3& light) { return light == Vec3(0); });
+}
+
+/// Of the i-th corner: within -1..-0.5 or 0.5..1. Source: Steele, Lea, Flood, Fast Splittable Pseudorandom
+/// Number Generators, OOPSLA 2014 (SplitMix64).
+double corner_weight(std::uint64_t i) {
+    std::uint64_t bits = (i + 1) * 0x9e3779b97f4a7c15u;
+    bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ bits >> 27) * 0x94d049bb133111ebu;
+    bits ^= bits >> 31;
+    const double size = 0.5 + 0.5 * static_cast<double>(bits >> 12) / static_cast<double>(1ull << 52);
+    return bits % 2 == 0 ? size : -size;
 }
 
 /// What the halves of a triangle have at their corners, where `middle` is between `first` and the next.
@@ -98,6 +111,23 @@ void TriangleSplitter::split(const TriangleSplit& split) {
     object_.material.push_back(object_.material[split.triangle]);
 }
 
+Vec3 weighted_corners(const ObjectMesh& mesh) {
+    Vec3 sum{0};
+    std::uint64_t i = 0;
+    for (const IdTriple& triangle : mesh.triangles)
+        for (const Id corner : triangle) sum = sum + corner_weight(i++) * mesh.points[corner];
+    return sum;
+}
+
+bool has_corners(const ObjectMesh& mesh, const Vec3& corners) {
+    double greatest = 0;
+    for (const Vec3& point : mesh.points)
+        greatest = std::max({greatest, std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)});
+    const double slack =
+        kCornerSlack * greatest * std::sqrt(3.0 * static_cast<double>(mesh.triangles.size()));
+    return length(weighted_corners(mesh) - corners) <= slack;
+}
+
 BakedLight rounded(const BakedLight& light) {
     BakedLight result;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -123,6 +153,9 @@ Json baked_light_json(const BakedLightRecord& record) {
     for (const BakedLight& light : record.light)
         if (has_back) add(light.back, back);
     Json json{{"triangles", record.triangles}};
+    if (const auto& at = record.corners)
+        json["corners"] = {rounded(at->x, kCornerDigits), rounded(at->y, kCornerDigits),
+                           rounded(at->z, kCornerDigits)};
     if (!splits.empty()) json["splits"] = std::move(splits);
     json["colors"] = std::move(palette).colors();
     json["front"] = std::move(front);

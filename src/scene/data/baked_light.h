@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,10 +39,19 @@ class TriangleSplitter {
 
 /// A mesh's baked light as its file has it.
 struct BakedLightRecord {
-    std::size_t triangles = 0;  // of the mesh before its splits
+    std::size_t triangles = 0;    // of the mesh before its splits
+    std::optional<Vec3> corners;  // weighted_corners() of it; without it only their number tells
     std::vector<TriangleSplit> splits;
     std::vector<BakedLight> light;  // per triangle after them
 };
+
+/// Tells meshes apart: a sum over the corners of their triangles, each times a weight of its own, so that it
+/// is another where points have moved or the corners come in another order. On every machine the same but for
+/// rounding, which sines and decoders of pictures make differ: compare by has_corners().
+Vec3 weighted_corners(const ObjectMesh& mesh);
+
+/// Whether `corners` is weighted_corners(mesh), within what rounding makes of it.
+bool has_corners(const ObjectMesh& mesh, const Vec3& corners);
 
 /// Light as files hold it: five digits of each number.
 BakedLight rounded(const BakedLight& light);

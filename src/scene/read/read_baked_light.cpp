@@ -7,6 +7,8 @@
 namespace trilens {
 namespace {
 
+constexpr double kMostWeightedCorners = 1e40;  // of coordinates up to 1e30
+
 Field<BakedLightRecord> by_hand(const char* key, Json values, const char* help) {
     return part<BakedLightRecord>(key, std::move(values), help);
 }
@@ -49,6 +51,11 @@ Json baked_light_schema() {
     const std::vector<Field<BakedLightRecord>> fields{
         by_hand("triangles", ref("index"),
                 "How many the mesh had when its light was baked: of another mesh it is refused."),
+        by_hand(
+            "corners", several(3, number_in(-kMostWeightedCorners, kMostWeightedCorners)),
+            "A sum over the corners of these triangles in the scene, each times a weight of its own: light "
+            "of a "
+            "mesh whose points or corners are others is refused. Without it only their number is looked at."),
         by_hand("splits", list_of(ref("index")),
                 "Pairs of a triangle and its edge 0, 1 or 2, in order: the triangle is halved by that edge's "
                 "midpoint, and its second half comes last."),
@@ -70,6 +77,10 @@ void read_baked_light(const Node& baked, ObjectMesh& object) {
         baked["triangles"].fail("the light was baked for a mesh of " + std::to_string(triangles) +
                                 " triangles, but this one has " + std::to_string(object.triangles.size()) +
                                 ": bake it again");
+    if (baked.has("corners") && !has_corners(object, to_vec3(baked["corners"].json)))
+        baked["corners"].fail(
+            "the light was baked for a mesh whose points or corners are not where this one has them: bake it "
+            "again");
     if (baked.has("splits")) split_triangles(baked["splits"], object);
     object.baked.assign(object.triangles.size(), {});
     read_side(baked, "front", &BakedLight::front, object);
