@@ -255,3 +255,27 @@ TEST_CASE("an explained pixel says which paths maxDepth ends, and that the truth
         CHECK(agree == by_facets);
     }
 }
+
+TEST_CASE("rays of one's own are followed whatever the length of their directions", "[laws][law]") {
+    const Renderer renderer(two_balls());
+    const Vec3 origin(0.3, 0.8, 4);
+    for (const Vec3& direction : {Vec3(0.1, -0.27, -1), Vec3(-0.3, -0.2, -1), Vec3(0.3, -0.6, -0.2)}) {
+        const auto shoot = [&](double factor) {
+            const Ray ray{origin, factor * direction};
+            return renderer.shoot(std::span(&ray, 1)).rays[0];
+        };
+        const ShotRay usual = shoot(1);
+        REQUIRE(usual.followed());
+        CHECK((usual.event_count > 0) == (direction.x != 0.3));
+        for (const double factor : {0x1p-1000, 0x1p-520, 0x1p-500, 0x1p500, 0x1p520, 0x1p1020}) {
+            const ShotRay scaled = shoot(factor);
+            INFO(factor);
+            CHECK(scaled.state == usual.state);
+            CHECK(scaled.event_count == usual.event_count);
+            CHECK(scaled.position == usual.position);
+            CHECK(scaled.direction == usual.direction);
+            CHECK(scaled.t == usual.t);
+        }
+        CHECK(length(shoot(1e-155).direction - usual.direction) < 1e-9);
+    }
+}

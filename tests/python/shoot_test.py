@@ -100,6 +100,15 @@ def test_rays_of_ones_own_are_those_of_the_camera(glass):
     np.testing.assert_allclose(inside["t"], np.sqrt([4, 4.04]), atol=1) and inside["event_count"].tolist() == [1, 1]
 
 
+def test_directions_of_any_length_are_followed(glass):
+    origin, direction = [[0.1, 0.2, 4]], np.array([[0.01, -0.02, -1]])
+    seen, events = glass.shoot(origins=origin, directions=direction)
+    for length in (1e-320, 1e-200, 1e-155, 1e-100, 2.0, 1e100, 1e154, 1e300):
+        same, met = glass.shoot(origins=origin, directions=length * direction)
+        assert same["state"][0] == seen["state"][0] and len(met) == len(events) > 0
+        np.testing.assert_allclose(same["direction"], seen["direction"], atol=1e-2 if length < 1e-300 else 1e-12)
+
+
 def test_bad_rays_are_refused(glass):
     for arguments in ({}, {"pixels": [[1, 2]], "origins": [[0, 0, 0]], "directions": [[0, 0, 1]]},
                       {"origins": [[0, 0, 0]]}, {"pixels": [[1, 2, 3]]},

@@ -235,10 +235,23 @@ ShotRays shoot_places(const World& world, const ShootRequest& request, std::span
     });
 }
 
+namespace {
+
+/// As it is, but for its length: by a power of two near 1, so that its square neither overflows nor vanishes.
+Ray of_usual_length(Ray ray) {
+    const Vec3 size = abs(ray.direction);
+    const double most = std::max({size.x, size.y, size.z});
+    if (!(most > 0) || !std::isfinite(most)) return ray;
+    for (int k = 0; k < 3; ++k) ray.direction[k] = std::scalbn(ray.direction[k], -std::ilogb(most));
+    return ray;
+}
+
+}  // namespace
+
 ShotRays shoot_rays(const World& world, const ShootRequest& request, std::span<const Ray> rays) {
     const CameraMedia media = media_by_ray(world);
     return shoot_each(Shooter(world, media, request.path), rays.size(),
-                      [&](std::size_t i) { return StartingRay{rays[i]}; });
+                      [&](std::size_t i) { return StartingRay{of_usual_length(rays[i])}; });
 }
 
 }  // namespace trilens
