@@ -64,7 +64,8 @@ std::size_t deflate(std::span<unsigned char> from, std::span<unsigned char> to) 
 
 namespace {
 
-bool inflate_as(std::uint32_t kind, std::span<unsigned char> from, std::span<unsigned char> to) {
+/// One stream: takes what is packed off `from`, and its place off `to`.
+bool inflate_one(std::uint32_t kind, std::span<unsigned char>& from, std::span<unsigned char>& to) {
     const UpperHalves cleared;
     thread_local const auto state = std::make_unique<inflate_state>();
     isal_inflate_init(state.get());
@@ -73,18 +74,24 @@ bool inflate_as(std::uint32_t kind, std::span<unsigned char> from, std::span<uns
     state->avail_in = static_cast<std::uint32_t>(from.size());
     state->next_out = to.data();
     state->avail_out = static_cast<std::uint32_t>(to.size());
-    return isal_inflate_stateless(state.get()) == ISAL_DECOMP_OK && state->block_state == ISAL_BLOCK_FINISH &&
-           state->total_out == to.size();
+    if (isal_inflate_stateless(state.get()) != ISAL_DECOMP_OK || state->block_state != ISAL_BLOCK_FINISH)
+        return false;
+    from = from.last(state->avail_in);
+    to = to.last(to.size() - state->total_out);
+    return true;
 }
 
 }  // namespace
 
 bool inflate(std::span<unsigned char> from, std::span<unsigned char> to) {
-    return inflate_as(ISAL_ZLIB, from, to);
+    return inflate_one(ISAL_ZLIB, from, to) && to.empty();
 }
 
 bool inflate_gzip(std::span<unsigned char> from, std::span<unsigned char> to) {
-    return inflate_as(ISAL_GZIP, from, to);
+    do
+        if (!inflate_one(ISAL_GZIP, from, to)) return false;
+    while (!to.empty() && !from.empty());
+    return to.empty();
 }
 
 std::uint32_t png_checksum(std::span<const unsigned char> bytes) {

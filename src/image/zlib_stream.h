@@ -13,7 +13,7 @@ std::size_t deflate(std::span<unsigned char> from, std::span<unsigned char> to);
 /// Whether the zlib stream `from` is whole and fills `to`. `from` is not changed.
 bool inflate(std::span<unsigned char> from, std::span<unsigned char> to);
 
-/// The same of a stream of gzip (RFC 1952); `from` may go on after it.
+/// The same of gzip (RFC 1952), of one member or several, as many as fill `to`; `from` may go on after them.
 bool inflate_gzip(std::span<unsigned char> from, std::span<unsigned char> to);
 
 /// The checksum of PNG's chunks (PNG, Third Edition, W3C, annex D).

@@ -200,11 +200,17 @@ class Checker {
     Found check_alternatives(const Json& value, const Json& schema, const Path& path) const {
         if (schema.contains("oneOf")) {
             Json choices = Json::array(), given = Json::array();
+            std::string partly;  // of a choice that is there, but lacks what it needs
             for (const Json& branch : schema.at("oneOf")) {
                 if (!branch.contains("required")) continue;  // of what is no object
                 choices.push_back(branch.at("required").at(0));
+                for (const Json& needed : branch.at("required"))
+                    if (partly.empty() && value.contains(choices.back()) && !value.contains(needed))
+                        partly = "'" + choices.back().get<std::string>() + "' needs '" +
+                                 needed.get<std::string>() + "' beside it";
                 if (matches(value, branch)) given.push_back(branch.at("required").at(0));
             }
+            if (given.empty() && !partly.empty()) return problem(path, partly);
             if (given.empty())
                 return problem(path, title(schema) + " needs one of " + quoted_list(choices, "and"));
             if (given.size() > 1)

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <random>
 
+#include "json/json.h"
 #include "scene/examples/examples.h"
 #include "scene_text.h"
 
@@ -27,6 +28,29 @@ TEST_CASE("every example loads without warnings that matter", "[scene]") {
         for (const std::string& warning : scene.warnings)
             CHECK(contains(warning, "this glass is one interface"));
     }
+}
+
+namespace {
+
+/// Keys that an object must have, and whose schema says what they are where they are missing.
+void collect_idle_defaults(const Json& schema, const std::string& place, std::string& all) {
+    if (schema.is_object() && schema.contains("required") && schema.contains("properties"))
+        for (const Json& key : schema.at("required")) {
+            const Json& properties = schema.at("properties");
+            const auto found = properties.find(key.get<std::string>());
+            if (found != properties.end() && found->is_object() && found->contains("default"))
+                all += place + "/" + key.get<std::string>() + "\n";
+        }
+    if (!schema.is_structured()) return;
+    for (const auto& [key, part] : schema.items()) collect_idle_defaults(part, place + "/" + key, all);
+}
+
+}  // namespace
+
+TEST_CASE("what a scene must say has no default", "[scene]") {
+    std::string all;
+    collect_idle_defaults(parse_json(scene_schema(), "the schema"), "", all);
+    CHECK(all == "");
 }
 
 #ifdef TRILENS_HAS_VALIJSON

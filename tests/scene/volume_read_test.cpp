@@ -126,7 +126,9 @@ TEST_CASE("transfer functions are points or a map, and their values rise", "[sce
     CHECK(points[1].extinction == Approx(2));
     CHECK(contains(volume_refusal(cells, R"({"map": "jet", "extinction": 6})"),
                    "/volumes/0/transferFunction/map"));
-    CHECK(contains(volume_refusal(cells, R"({"map": "heat"})"), "/volumes/0/transferFunction"));
+    CHECK(contains(volume_refusal(cells, R"({"map": "heat"})"),
+                   "/volumes/0/transferFunction: 'map' needs 'extinction' beside it"));
+    CHECK(contains(volume_refusal(cells, "{}"), "needs one of 'points' and 'map'"));
     CHECK(
         contains(volume_refusal(cells, R"({"map": "heat", "extinction": 1, "range": [2, 2]})"), "must rise"));
     CHECK(contains(volume_refusal(cells, R"({"points": [{"value": 1, "color": [1,1,1], "extinction": 1},
@@ -167,6 +169,10 @@ TEST_CASE("samples as they lie in memory are read in every type", "[scene]") {
     CHECK(contains(volume_refusal(file + R"(, "grid": {"size": [2,2,2], "type": "uint8"})"),
                    "16 bytes of samples"));
     CHECK(contains(volume_refusal(file + R"(, "grid": {"size": [2,2,2], "type": "float"})"), "are 32"));
+    for (const char* skip : {"7", "9", "17"})
+        CHECK(contains(
+            volume_refusal(file + R"(, "grid": {"size": [2,2,2], "type": "uint8", "skip": )" + skip + "}"),
+            std::string(" bytes of samples after the ") + skip + " skipped, but 2 x 2 x 2"));
 }
 
 TEST_CASE("VTK's legacy files are read, of both ways to write cells", "[scene]") {

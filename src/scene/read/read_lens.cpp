@@ -57,7 +57,7 @@ const std::vector<Field<WrittenSide>>& side_fields() {
             .without_default(),
         choice("profileAlong", &WrittenSide::profile,
                "The axis along which a toric side's profile lies; it is turned about a line parallel to it."),
-        setting("aperture", &WrittenSide::aperture, ref("positive"), "Radius of its rim."),
+        setting("aperture", &WrittenSide::aperture, ref("positive"), "Radius of its rim.").without_default(),
     };
     return fields;
 }
@@ -165,10 +165,8 @@ const std::vector<Field<LensTilt>>& tilt_fields() {
 const std::vector<Field<WrittenRow>>& row_fields() {
     static const std::vector<Field<WrittenRow>> fields = [] {
         std::vector<Field<WrittenRow>> list;
-        for (const Field<WrittenSide>& field : side_fields()) {
+        for (const Field<WrittenSide>& field : side_fields())
             list.push_back(within(&WrittenRow::side, field));
-            if (field.key == "aperture") list.back().schema.erase("default");
-        }
         list.push_back(setting("thickness", &WrittenRow::thickness, ref("number"),
                                "To the next surface, along the axis; negative behind an odd number of "
                                "mirrors."));

@@ -73,7 +73,8 @@ const std::vector<Field<GridText>>& grid_fields() {
         part<GridText>("type", word_of(sample_type_names()), "Of the samples in 'file'."),
         part<GridText>("endian", word_of({"little", "big"}),
                        "Of samples of several bytes; little by default."),
-        part<GridText>("skip", ref("index"), "Bytes before the first sample; 0 by default."),
+        part<GridText>("skip", ref("index"),
+                       "Bytes before the first sample; 0 by default. Behind the last there must be none."),
     };
     return fields;
 }
@@ -102,9 +103,11 @@ const std::vector<Field<TransferPoint>>& transfer_point_fields() {
     static const std::vector<Field<TransferPoint>> fields{
         setting("value", &TransferPoint::value, ref("number")).without_default(),
         setting("color", &TransferPoint::color, ref("color"),
-                "Radiance that an opaque volume of that value has."),
+                "Radiance that an opaque volume of that value has.")
+            .without_default(),
         setting("extinction", &TransferPoint::extinction, ref("notNegative"),
-                "Per world unit: light falls to 1/e over its inverse."),
+                "Per world unit: light falls to 1/e over its inverse.")
+            .without_default(),
     };
     return fields;
 }

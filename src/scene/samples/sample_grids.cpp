@@ -48,12 +48,13 @@ std::vector<double> decode_samples(std::string_view bytes, const std::string& fi
                                    const std::array<std::size_t, 3>& size, const SampleLayout& layout) {
     const std::size_t count = size[0] * size[1] * size[2], each = bytes_of(layout.type);
     const std::size_t given = bytes.size() - std::min(bytes.size(), layout.skip);
-    if (given < count * each || (layout.skip == 0 && given > count * each))
-        throw InputError(file, "",
-                         "has " + std::to_string(given) + " bytes of samples, but " +
-                             std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
-                             std::to_string(size[2]) + " samples of " + std::to_string(each) + " bytes are " +
-                             std::to_string(count * each));
+    if (given != count * each)
+        throw InputError(
+            file, "",
+            "has " + std::to_string(given) + " bytes of samples" +
+                (layout.skip > 0 ? " after the " + std::to_string(layout.skip) + " skipped" : "") + ", but " +
+                std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
+                " samples of " + std::to_string(each) + " bytes are " + std::to_string(count * each));
     std::vector<double> samples(count);
     for (std::size_t i = 0; i < count; ++i)
         samples[i] = number_at(bytes.data() + layout.skip + i * each, layout.type, layout.big_endian);
@@ -206,6 +207,8 @@ void NrrdReader::read_key(const std::string& key, const std::string& value) {
         layout_.big_endian = value == "big";
         has_endian_ = true;
     } else if (key == "data file" || key == "datafile") {
+        if (words.empty() || words[0] == "LIST" || value.find('%') != std::string::npos)
+            fail("'" + key + "' must name one file: samples in several files are not read");
         data_file_ = value;
     } else if (key == "byte skip" || key == "byteskip") {
         const std::optional<int> skip = parse_integer(value);
