@@ -153,6 +153,19 @@ TEST_CASE("a PLY that ends early, lies or is none is refused", "[scene][points]"
                                     "z\nend_header\n1 nan 3\n"),
                    "vertex 0 has a coordinate that is no number"));
     CHECK(contains(ply_fault(head + "element vertex 1\nproperty list float int x\n"), "no type that counts"));
+    const auto colored = [&](const std::string& type, const std::string& red) {
+        std::string text = head + "element vertex 1\n";
+        for (const char* name : {"x", "y", "z"}) text += std::string("property float ") + name + "\n";
+        for (const char* name : {"red", "green", "blue"}) text += "property " + type + " " + name + "\n";
+        return text + "end_header\n1 2 3\n" + red + " 1 1\n";
+    };
+    CHECK(ply_fault(colored("uchar", "255")) == "");
+    CHECK(ply_fault(colored("float", "300")) == "");
+    for (const char* red : {"256", "300", "-1", "0.5"})
+        CHECK(contains(ply_fault(colored("uchar", red)),
+                       "cloud.ply: line 11: '" + std::string(red) + "' is no uchar"));
+    CHECK(contains(ply_fault(colored("uint16", "65536")), "line 11: '65536' is no ushort"));
+    CHECK(contains(ply_fault(colored("char", "100")), "'red' is char: colours are uchar, ushort, float"));
 }
 
 TEST_CASE("clouds come inline, as text with and without colours, and as PLY, and are moved",

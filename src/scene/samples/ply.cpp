@@ -14,21 +14,37 @@
 namespace trilens {
 namespace {
 
+constexpr struct {
+    SampleType type;
+    std::array<const char*, 2> names;
+} kPlyTypes[]{{SampleType::kInt8, {"char", "int8"}},      {SampleType::kUint8, {"uchar", "uint8"}},
+              {SampleType::kInt16, {"short", "int16"}},   {SampleType::kUint16, {"ushort", "uint16"}},
+              {SampleType::kInt32, {"int", "int32"}},     {SampleType::kUint32, {"uint", "uint32"}},
+              {SampleType::kFloat, {"float", "float32"}}, {SampleType::kDouble, {"double", "float64"}}};
+
 std::optional<SampleType> type_named(std::string_view name) {
-    constexpr struct {
-        SampleType type;
-        std::array<const char*, 2> names;
-    } kTypes[]{{SampleType::kInt8, {"char", "int8"}},      {SampleType::kUint8, {"uchar", "uint8"}},
-               {SampleType::kInt16, {"short", "int16"}},   {SampleType::kUint16, {"ushort", "uint16"}},
-               {SampleType::kInt32, {"int", "int32"}},     {SampleType::kUint32, {"uint", "uint32"}},
-               {SampleType::kFloat, {"float", "float32"}}, {SampleType::kDouble, {"double", "float64"}}};
-    for (const auto& [type, names] : kTypes)
+    for (const auto& [type, names] : kPlyTypes)
         if (name == names[0] || name == names[1]) return type;
     return std::nullopt;
 }
 
+std::string name_of_type(SampleType wanted) {
+    for (const auto& [type, names] : kPlyTypes)
+        if (type == wanted) return names[0];
+    return "";
+}
+
 bool is_fraction(SampleType type) {
     return type == SampleType::kFloat || type == SampleType::kDouble;
+}
+
+/// Whether a number that is written out is one of a whole type.
+bool fits_type(double number, SampleType type) {
+    const bool has_sign =
+        type == SampleType::kInt8 || type == SampleType::kInt16 || type == SampleType::kInt32;
+    const double values = std::ldexp(1.0, 8 * static_cast<int>(bytes_of(type)));
+    const double least = has_sign ? -values / 2 : 0;
+    return number >= least && number < least + values && number == std::floor(number);
 }
 
 struct Property {
@@ -156,6 +172,8 @@ double PlyReader::next_number(SampleType type) {
         if (begin == at_) fail("ends before all that its header counts");
         const std::optional<double> number = parse_number(bytes_.substr(begin, at_ - begin));
         if (!number) fail("'" + std::string(bytes_.substr(begin, at_ - begin)) + "' is no number");
+        if (!is_fraction(type) && !fits_type(*number, type))
+            fail("'" + std::string(bytes_.substr(begin, at_ - begin)) + "' is no " + name_of_type(type));
         return *number;
     }
     const std::size_t size = bytes_of(type);
@@ -179,11 +197,14 @@ void PlyReader::read_row(const Element& element, std::vector<double>& row) {
     }
 }
 
+bool is_color(SampleType type) {
+    return type == SampleType::kUint8 || type == SampleType::kUint16 || is_fraction(type);
+}
+
 /// Whole numbers are sRGB, as scanners write them; others are linear.
 double linear_color(double value, SampleType type) {
     if (is_fraction(type)) return value;
-    const double most = type == SampleType::kUint8 ? 255 : type == SampleType::kUint16 ? 65535 : 0;
-    return most > 0 ? linear_from_srgb(value / most) : value;
+    return linear_from_srgb(value / (type == SampleType::kUint8 ? 255 : 65535));
 }
 
 ColoredPoints PlyReader::read_vertices(const Element& element) {
@@ -199,6 +220,10 @@ ColoredPoints PlyReader::read_vertices(const Element& element) {
     // Each number takes a byte at the least, and as text a blank too: a header that counts more lies.
     if (element.count > bytes_.size() / 3) fail("ends before all that its header counts");
     const bool colored = color[0] != none && color[1] != none && color[2] != none;
+    for (const std::size_t k : color)
+        if (colored && !is_color(element.properties[k].type))
+            fail("'" + element.properties[k].name + "' is " + name_of_type(element.properties[k].type) +
+                 ": colours are uchar, ushort, float or double");
     ColoredPoints points;
     std::vector<double> row;
     for (std::size_t i = 0; i < element.count; ++i) {
