@@ -4,6 +4,8 @@
 #include "trilens/animation.h"
 
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 #include <string>
 
 #include "base/util/error.h"
@@ -153,6 +155,28 @@ TEST_CASE("rotations go along the shorter great arc at even speed", "[laws][law]
     }
 }
 
+TEST_CASE("keys of rotations may be angles, between which the turn goes as between their quaternions",
+          "[laws][law]") {
+    const std::string target = "/meshes/2/transform/rotate";
+    const auto points = [&](const std::string& keys, int frame) {
+        return scene_at_frame(parse_scene(scene_text({}, track(target, keys))), frame)
+            .meshes[2]
+            .object.points;
+    };
+    const double c = std::cos(0.25 * std::numbers::pi);
+    char quaternion[100];
+    std::snprintf(quaternion, sizeof quaternion, "[0, 0, %.17g, %.17g]", c, c);
+    const std::string still = key(0, "[0, 0, 0, 1]") + ",", turned = still + key(10, quaternion);
+    for (const char* angles : {R"({"euler": [0, 0, 90]})", R"({"axis": [0, 0, 2], "angle": 90})"})
+        for (const int frame : {0, 3, 10}) {
+            INFO(angles << " " << frame);
+            const std::vector<Vec3> by_angles = points(still + key(10, angles), frame),
+                                    by_quaternion = points(turned, frame);
+            REQUIRE(by_angles.size() == 4);
+            for (std::size_t p = 0; p < 4; ++p) CHECK(length(by_angles[p] - by_quaternion[p]) < 1e-13);
+        }
+}
+
 TEST_CASE("smooth keys ease in and out", "[laws][law]") {
     const std::string tracks =
         track("/cameras/0/yfov", key(0, "40") + "," + key(4, "48"), R"(, "interpolation": "smooth")");
@@ -221,6 +245,32 @@ TEST_CASE("animations that are none are refused with their place", "[laws][bad-i
                ContainsSubstring("/animation/tracks/0/keys/0/value") && ContainsSubstring("zero"));
     CHECK_THAT(refused(track("/cameras/0/yfov", key(0, "40")) + "," + track("/cameras/0/yfov", key(0, "50"))),
                ContainsSubstring("/animation/tracks/1/target") && ContainsSubstring("already"));
+    const std::string whole = "/meshes/2/transform/translate", place = key(0, "[0, 1, 5]"), x = key(0, "1");
+    for (const char* part : {"/meshes/2/transform/translate/0", "/meshes/card/transform/translate/0"}) {
+        CHECK_THAT(refused(track(whole, place) + "," + track(part, x)),
+                   ContainsSubstring("/animation/tracks/1/target") &&
+                       ContainsSubstring("is a part of " + whole + ", which an earlier track animates"));
+        CHECK_THAT(
+            refused(track(part, x) + "," + track(whole, place)),
+            ContainsSubstring("/animation/tracks/1/target") && ContainsSubstring("holds " + whole + "/0"));
+    }
+    for (const char* bad : {R"({"euler": [0, 0]})", R"({"axis": [0, 0, 1]})",
+                            R"({"axis": [0, 0, 0], "angle": 1})", R"({"turn": 3})", "40", R"("up")", "{}"})
+        CHECK_THAT(refused(track("/meshes/2/transform/rotate", key(0, bad))),
+                   ContainsSubstring("/animation/tracks/0/keys/0/value"));
+    for (const char* form : {R"({"euler": [0, 0, %d]})", R"({"axis": [0, 1, 0], "angle": %d})"}) {
+        const auto turn = [&](int angle) {
+            char text[100];
+            std::snprintf(text, sizeof text, form, angle);
+            return std::string(text);
+        };
+        const auto turns = [&](int angle) {
+            return refused(track("/meshes/2/transform/rotate", key(0, turn(0)) + "," + key(4, turn(angle))));
+        };
+        CHECK(turns(180) == "taken");
+        CHECK_THAT(turns(360), ContainsSubstring("/animation/tracks/0/keys/1/value") &&
+                                   ContainsSubstring("more than 180 degrees"));
+    }
     CHECK_THAT(refused(R"({ "target": "/cameras/0/yfov", "keys": [], "easing": 1 })"),
                ContainsSubstring("/animation/tracks/0"));
     // A value that the schema does not allow is found when its frame is asked for.

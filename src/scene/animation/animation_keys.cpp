@@ -7,8 +7,10 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "json/schema.h"
 #include "scene/data/scene_inputs.h"
 #include "scene/read/override.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {
@@ -57,8 +59,7 @@ Json between(const Json& a, const Json& b, double s) {
 }
 
 Vec4 unit_quaternion(const Json& value) {
-    Vec4 q(0);
-    for (int k = 0; k < 4; ++k) q[k] = value[static_cast<std::size_t>(k)].get<double>();
+    const Vec4 q = read_rotation(Node{value, "", ""});
     return q / length(q);
 }
 
@@ -92,14 +93,29 @@ Json value_at(const Node& track, double frame) {
                                : between(value, keys[next].at("value"), s);
 }
 
+/// As the schema has it, and not zero.
 void check_rotation(const Node& value) {
-    if (!value.json.is_array() || value.size() != 4) value.fail("a rotation is a quaternion: x, y, z, w");
-    double squares = 0;
-    for (const Json& part : value.json) {
-        if (!part.is_number()) value.fail("a rotation is a quaternion of four numbers: x, y, z, w");
-        squares += part.get<double>() * part.get<double>();
-    }
-    if (!(squares > 0)) value.fail("a rotation's quaternion must not be zero");
+    static const Json schema{{"$ref", "#/definitions/rotation"},
+                             {"definitions", scene_schema_json().at("definitions")}};
+    if (value.json.is_array() && value.size() != 4) value.fail("a rotation is a quaternion: x, y, z, w");
+    if (const auto found = find_problem(value.json, schema))
+        fail_at(value.file, value.place + found->place, found->message);
+    read_rotation(value);
+}
+
+/// Of angles that turn farther than quaternions can tell: they go by the shorter way.
+void check_turn(const Node& before, const Node& after) {
+    constexpr double kMostTurn = 180;
+    const auto refuse_far = [&](const Json& from, const Json& to) {
+        if (std::fabs(to.get<double>() - from.get<double>()) > kMostTurn)
+            after.fail(
+                "turns by more than 180 degrees from the key before, of which only the shorter way could be "
+                "seen: give keys between them, or animate the angle itself");
+    };
+    if (before.has("euler") && after.has("euler"))
+        for (std::size_t k = 0; k < 3; ++k) refuse_far(before.json.at("euler")[k], after.json.at("euler")[k]);
+    if (before.has("angle") && after.has("angle") && before.json.at("axis") == after.json.at("axis"))
+        refuse_far(before.json.at("angle"), after.json.at("angle"));
 }
 
 void check_track(const Node& root, const Node& track) {
@@ -112,8 +128,10 @@ void check_track(const Node& root, const Node& track) {
             "them)");
     for (std::size_t k = 0; k < keys.size(); ++k) {
         const Node value = keys[k]["value"];
-        if (is_rotation(pointer)) check_rotation(value);
-        if (course_of(track) != Course::kStep) {
+        if (is_rotation(pointer)) {
+            check_rotation(value);
+            if (k > 0 && course_of(track) != Course::kStep) check_turn(keys[k - 1]["value"], value);
+        } else if (course_of(track) != Course::kStep) {
             const std::string why = mismatch(keys[std::size_t{0}]["value"].json, value.json);
             if (!why.empty()) value.fail(why);
         }
@@ -139,7 +157,11 @@ void check_animation(const Node& root) {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
         const Node target = tracks[i]["target"];
         check_track(root, tracks[i]);
-        const std::string pointer = target.json.get<std::string>();
+        const std::string pointer = pointer_by_places(root.json, target.json.get<std::string>(), root.file);
+        for (std::size_t end = pointer.find('/', 1); end != std::string::npos;
+             end = pointer.find('/', end + 1))
+            if (const std::string whole = pointer.substr(0, end); targets.contains(whole))
+                target.fail("is a part of " + whole + ", which an earlier track animates");
         const auto inside = targets.lower_bound(pointer + "/");
         if (inside != targets.end() && inside->starts_with(pointer + "/"))
             target.fail("holds " + *inside + ", which an earlier track animates and this one would undo");

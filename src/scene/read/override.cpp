@@ -133,6 +133,25 @@ void apply_overrides(Json& scene, std::span<const SceneOverride> overrides, cons
     for (const SceneOverride& change : overrides) apply(scene, {change, file});
 }
 
+std::string pointer_by_places(const Json& scene, const std::string& pointer, const std::string& file) {
+    const SceneOverride change{pointer, ""};
+    const Target target{change, file};
+    std::string places;
+    const Json* value = &scene;
+    for (std::string& key : split_pointer(target)) {
+        if (value && value->is_array()) {
+            const std::size_t entry = entry_of(*value, key, target);
+            key = std::to_string(entry);
+            value = &(*value)[entry];
+        } else {
+            const bool is_there = value && value->is_object() && value->contains(key);
+            value = is_there ? &value->at(key) : nullptr;
+        }
+        places += "/" + escape_key(key);
+    }
+    return places;
+}
+
 Json resolved_json(const Scene& scene) {
     const std::string title = scene_title(scene);
     Json json = parse_json(scene.resolved, title);

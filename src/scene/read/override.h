@@ -16,6 +16,10 @@ namespace trilens {
 /// or names nothing.
 void apply_overrides(Json& scene, std::span<const SceneOverride> overrides, const std::string& file);
 
+/// The pointer with entries of arrays by their places, where it names them by name; keys that there are not
+/// yet stay as they are. Throws as apply_overrides.
+std::string pointer_by_places(const Json& scene, const std::string& pointer, const std::string& file);
+
 /// Scene::resolved, which is not empty, as a document. Callers may have written it: throws InputError where
 /// it is no scene's, as the schema has it, or names other meshes or cameras than the scene has.
 Json resolved_json(const Scene& scene);

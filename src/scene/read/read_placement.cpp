@@ -27,7 +27,8 @@ Vec3 read_tangent(const Node& primitive, const Vec3& axis) {
     return normalize(across);
 }
 
-/// As a quaternion.
+}  // namespace
+
 Vec4 read_rotation(const Node& node) {
     if (node.json.is_array()) {
         Vec4 rotate;
@@ -40,8 +41,6 @@ Vec4 read_rotation(const Node& node) {
         return quaternion_of_euler(to_vec3(node["euler"].json), string_or(node, "order", "XYZ"));
     return quaternion_about(read_direction(node["axis"]), node["angle"].json.get<double>());
 }
-
-}  // namespace
 
 Transform read_transform(const Node& mesh) {
     if (!mesh.has("transform")) return {};

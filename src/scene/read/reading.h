@@ -125,6 +125,9 @@ void check_lens_side(const Node& side);
 /// The polygons of an object's primitive, in its own frame.
 PolygonMesh read_object_primitive(const Node& primitive);
 Transform read_transform(const Node& mesh);
+/// Of a transform's `rotate`, as the schema has it: a quaternion of any length. Throws InputError where it is
+/// zero.
+Vec4 read_rotation(const Node& node);
 /// Moves a mesh as its `transform` and `fit` say. Throws InputError where points leave the range.
 void place_mesh(PolygonMesh& polygons, const Node& mesh);
 /// Whether the triangles of a terrain depend on how it is seen, and that is not known yet.

@@ -146,8 +146,8 @@ constexpr const char* kFrame = R"json({
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
     "required": ["target", "keys"],
     "properties": {
-      "target": { "type": "string", "minLength": 1, "description": "JSON pointer of a number, or of an array of numbers, of this scene: /cameras/0/yfov, /meshes/2/points." },
-      "interpolation": { "enum": ["linear", "smooth", "step"], "default": "linear", "description": "From key to key; rotations go by the shorter great arc." },
+      "target": { "type": "string", "minLength": 1, "description": "JSON pointer of a number, of an array of numbers, or of a rotation, of this scene: /cameras/0/yfov, /meshes/2/points; neither a part of another track's target nor the whole that holds it." },
+      "interpolation": { "enum": ["linear", "smooth", "step"], "default": "linear", "description": "From key to key; rotations, of quaternions as of angles, go by the shorter great arc." },
       "keys": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/key" } }
     }
   },
