@@ -166,7 +166,7 @@ Command anamorph_command() {
           {.names = "--dpi", .target = &options->dpi, .help = "dots per inch", .range = {1, 4800}},
           {.names = "--bleed",
            .target = &options->bleed,
-           .help = "how far the picture's rim is drawn on beyond it",
+           .help = "how far the picture's rim is drawn on beyond it, as 0.2cm; without a unit, millimetres",
            .value = "LENGTH"},
           {.names = "--window",
            .target = &options->window,

@@ -215,6 +215,14 @@ TEST_CASE("lenses that cannot be are refused with their place", "[inverse][bad-i
         "tangent": [1, 0, 0], "size": [0.2, 0.2]}, "lens": {"ior": 1.5},
         "wish": {"type": "equirectangular", "window": [-5, -5, 5, 5]}})";
     CHECK_THROWS_AS(parse_wish(text, "wish.json"), InputError);
+    for (const char* window : {"[-5, -95, 5, 5]", "[-5, -5, 5, 90.5]"}) {
+        std::string beyond = text;
+        beyond.replace(beyond.find("1.5}"), 4, R"(1.5, "thickness": 0.05})");
+        beyond.replace(beyond.find("[-5, -5, 5, 5]"), 14, window);
+        CHECK_THROWS_WITH(
+            parse_wish(beyond, "wish.json"),
+            ContainsSubstring("/wish/window/") && ContainsSubstring("latitude beyond 90 degrees"));
+    }
     std::string thick = text;
     thick.replace(thick.find("1.5}"), 4, R"(1.5, "thickness": 0.05})");
     const DesignWish read = parse_wish(thick, "wish.json");

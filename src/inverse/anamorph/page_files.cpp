@@ -74,7 +74,8 @@ double parse_length(const std::string& text) {
     const auto number = number_list(text.substr(0, end == std::string::npos ? 0 : end + 1));
     const std::string unit = end == std::string::npos ? text : text.substr(end + 1);
     if (!number || number->size() != 1 || number->front() < 0)
-        throw UsageError("a length is a number with its unit, as 2mm, not \"" + text + "\"");
+        throw UsageError("a length is a number with its unit, as 0.5cm, or of millimetres, not \"" + text +
+                         "\"");
     return number->front() * (unit.empty() ? 1 : parse_unit(unit) * 1000);
 }
 

@@ -34,8 +34,9 @@ const std::vector<Field<MirrorPatch>>& patch_fields() {
 const std::vector<Field<WishMap>>& map_fields() {
     using W = WishMap;
     static const std::vector<Field<W>> fields = [] {
-        Field<W> window = part<W>("window", several(4, ref("number")),
-                                  "Longitudes and latitudes, degrees: west, south, east, north.");
+        Field<W> window =
+            part<W>("window", several(4, ref("number")),
+                    "Longitudes and latitudes, degrees: west, south, east, north; latitudes within -90..90.");
         window.schema["default"] = {-45, -45, 45, 45};
         window.read = [](const Json& json, W& into) { from_json_value(json, into.window); };
         return std::vector<Field<W>>{

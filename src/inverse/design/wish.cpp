@@ -61,6 +61,9 @@ void check_map(const WishMap& wish, const std::string& name) {
     if (wish.type == WishType::kPlane &&
         !(length(cross(wish.u, wish.v)) > 1e-9 * length(wish.u) * length(wish.v)))
         refuse_wish(name, "/wish/u", "and v span no plane");
+    for (const std::size_t k : {1u, 3u})
+        if (wish.type == WishType::kEquirectangular && !(std::fabs(wish.window[k]) <= 90))
+            refuse_wish(name, fmt::format("/wish/window/{}", k), "is a latitude beyond 90 degrees");
     if (wish.type == WishType::kMap &&
         (wish.columns < 4 || wish.rows < 4 ||
          wish.values.size() != static_cast<std::size_t>(wish.columns) * static_cast<std::size_t>(wish.rows)))
