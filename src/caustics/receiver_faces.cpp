@@ -24,13 +24,12 @@ bool lies_in(const ReceiverFace& face, const Corners& points) {
     });
 }
 
-Vec3 longest_side(const Corners& points) {
-    Vec3 longest(0);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 side = points[(k + 1) % 3] - points[k];
-        if (length(side) > length(longest)) longest = side;
-    }
-    return longest;
+/// Neither the longest nor the shortest: of half a rectangle, which the longest would cut askew, the longer
+/// leg.
+Vec3 middle_side(const Corners& points) {
+    Corners sides{points[1] - points[0], points[2] - points[1], points[0] - points[2]};
+    std::sort(sides.begin(), sides.end(), [](const Vec3& a, const Vec3& b) { return dot(a, a) < dot(b, b); });
+    return sides[1];
 }
 
 }  // namespace
@@ -44,7 +43,7 @@ ReceiverFaces::ReceiverFaces(const TriangleScene& scene) : face_of_(scene.size()
         const Vec3 normal = normalize_or_zero(cross(points[1] - points[0], points[2] - points[0]));
         if (normal == Vec3(0)) continue;
         if (last == kNone || scene.object[t] != scene.object[last] || !lies_in(faces_.back(), points)) {
-            faces_.push_back({points[0], normal, {}, 0, normalize(longest_side(points)), {}});
+            faces_.push_back({points[0], normal, {}, 0, normalize(middle_side(points)), {}});
             box = {};
         }
         for (const Vec3& point : points) box.include(point);

@@ -14,7 +14,7 @@ struct ReceiverFace {
     Vec3 center{0};            // in the plane
     double radius = 0;
     // A rectangle in the plane around the center that holds it.
-    Vec3 along{0};  // unit: its first triangle's longest side
+    Vec3 along{0};  // unit: its first triangle's side of middle length
     Vec2 half{0};   // of its sides, along and across
     double area = 0;
 };
