@@ -47,9 +47,18 @@ void require_picture(const Renderer& renderer) {
 /// What beams that end at borders of histories may count twice.
 constexpr double kBorder = 0.02;
 
+/// What glass absorbs is interpolated along beams: a map that cuts them finer than the ends' sum does may
+/// have so much more light.
+double by_absorption(const Scene& scene) {
+    const bool absorbs = std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+        return mesh.role == Role::kOptic && scene.materials[mesh.material].attenuation_distance > 0;
+    });
+    return absorbs ? kBorder : 1e-6;
+}
+
 /// Of each colour: what comes to the optics is not less than what leaves them, nor that less than what a map
-/// gets.
-void require_balance(const CausticMap& map) {
+/// gets, but for that share.
+void require_balance(const CausticMap& map, double more) {
     for (int c = 0; c < 3; ++c) {
         const double in = map.flux_in[c], out = map.flux_on_objects[c] + map.flux_away[c],
                      got = map.flux_received[c];
@@ -57,7 +66,7 @@ void require_balance(const CausticMap& map) {
             std::isfinite(in) && std::isfinite(out) && std::isfinite(got) && in >= 0 && out >= 0 && got >= 0,
             "a flux that is none");
         require(out <= in * (1 + kBorder), fmt::format("optics make light: {} of {}", out, in));
-        require(got <= map.flux_on_objects[c] * (1 + 1e-6) + 1e-9 * in,
+        require(got <= map.flux_on_objects[c] * (1 + more) + 1e-9 * in,
                 fmt::format("a map receives {} of {} on objects, {} in", got, map.flux_on_objects[c], in));
     }
     for (const Vec3& light : map.irradiance)
@@ -79,7 +88,7 @@ void require_maps(const Renderer& renderer, const Scene& scene) {
         for (const bool exact : {false, true}) {
             request.exact = exact;
             // Objects without a map of their surface are refused.
-            answer([&] { require_balance(make_caustic_map(renderer, request)); });
+            answer([&] { require_balance(make_caustic_map(renderer, request), by_absorption(scene)); });
         }
     }
 }

@@ -7,6 +7,7 @@
 #include "base/description/material.h"
 #include "base/util/format.h"
 #include "json/schema.h"
+#include "scene/data/scene_digest.h"
 #include "scene/load.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
@@ -119,6 +120,22 @@ std::vector<FilmMove> unseen(std::span<const FilmMoveQuery> queries) {
     return std::vector<FilmMove>(queries.size());
 }
 
+/// A text that stands for the scene's own.
+Scene read_untextured(const Scene& scene, const std::string& text, std::span<const SceneOverride> changes) {
+    const auto blank = std::make_shared<const Texture>();
+    const TextureReader no_textures{[&](const std::string&) { return blank; },
+                                    [&](std::span<const unsigned char>, const std::string&) { return blank; },
+                                    [&](const std::string& file) {
+                                        for (const Mesh& mesh : scene.meshes)
+                                            if (mesh.terrain && mesh.terrain->file == file)
+                                                return *mesh.terrain->heights;
+                                        throw InputError(file, "", "is no terrain of the scene before");
+                                    },
+                                    {},
+                                    [](const Scene&) { return unseen; }};
+    return load_scene_text(text, SceneSource(scene_title(scene), scene.folder), changes, no_textures);
+}
+
 }  // namespace
 
 Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers) {
@@ -133,19 +150,12 @@ Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers) {
         begun = parent;
         changes.push_back({number.pointer, text_of(number.value)});
     }
-    const auto blank = std::make_shared<const Texture>();
-    const TextureReader no_textures{[&](const std::string&) { return blank; },
-                                    [&](std::span<const unsigned char>, const std::string&) { return blank; },
-                                    [&](const std::string& file) {
-                                        for (const Mesh& mesh : scene.meshes)
-                                            if (mesh.terrain && mesh.terrain->file == file)
-                                                return *mesh.terrain->heights;
-                                        throw InputError(file, "", "is no terrain of the scene before");
-                                    },
-                                    {},
-                                    [](const Scene&) { return unseen; }};
-    return load_scene_text(scene.resolved, SceneSource(scene_title(scene), scene.folder), changes,
-                           no_textures);
+    return read_untextured(scene, scene.resolved, changes);
+}
+
+bool is_same_scene(const Scene& scene, const std::string& text) {
+    return scene_digest(read_untextured(scene, text, {})) ==
+           scene_digest(read_untextured(scene, scene.resolved, {}));
 }
 
 }  // namespace trilens

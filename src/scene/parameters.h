@@ -25,4 +25,8 @@ std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::s
 Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers);
 Scene scene_with(const Scene& scene, const SceneNumber& number);
 
+/// Whether a text, like the scene's own with more of it written out, is the same scene: textures are not
+/// looked at. Throws InputError where it is none.
+bool is_same_scene(const Scene& scene, const std::string& text);
+
 }  // namespace trilens

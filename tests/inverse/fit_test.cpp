@@ -303,6 +303,10 @@ TEST_CASE("what cannot be fitted is refused with its place", "[inverse][bad-inpu
     CHECK(refusal("/meshes/0/primitive/radios").find("radios") != std::string::npos);
     CHECK(refusal("/film/width").find("no number of a camera") != std::string::npos);
     CHECK(refusal("meshes").find("must begin with '/'") != std::string::npos);
+    // A default that the scene does not have, for its mesh is no primitive.
+    for (const char* pointer : {"/meshes/0/primitive/radius", "/meshes/0/primitive/center"})
+        CHECK(refusal_in(parse_scene(trilens_test::saddle_scene()), pointer)
+                  .find(std::string(pointer) + ": is not in the scene") != std::string::npos);
 
     const auto refusal_with = [&](const std::string& json, const SceneOverride& change) {
         return refusal_in(parse_scene(json, "", std::span(&change, 1)), "/meshes/0/transform/translate");

@@ -81,11 +81,6 @@ class Fisheye final : public CameraModel {
         return FilmImage{middle_ + scale * Vec2(local.x, -local.y), distance, eye_};
     }
 
-    Vec2 nearest_with_ray(const Vec2& at) const override {
-        const Vec2 from_middle = at - middle_;
-        const double distance = length(from_middle);
-        return distance <= circle_ ? at : middle_ + (circle_ / distance) * from_middle;
-    }
     std::optional<Vec3> eye() const override { return eye_; }
     double focus() const override { return focus_; }
 

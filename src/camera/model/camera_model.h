@@ -78,9 +78,6 @@ class CameraModel {
     /// (the poles of a panorama); 1 elsewhere. Errors along x are counted in pixels' worth.
     virtual double stretch(const Vec2& /*at*/) const { return 1; }
 
-    /// The nearest place that has a ray, for places outside of a film's part that has rays.
-    virtual Vec2 nearest_with_ray(const Vec2& at) const { return at; }
-
     /// Where along its rays a camera's users look, in units of t; the film's error is judged there.
     virtual double focus() const = 0;
 };

@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
+#include "camera/model/cut_cells.h"
 #include "camera/model/general_linear.h"
 
 namespace trilens {
 namespace {
 
 constexpr double kNudge = 1e-9;   // share of the film by which corners on a break stand inside their cell
-constexpr double kFarAway = 1e4;  // times the focus
+constexpr std::array kDepths{1.0, 1e4};  // times the focus
 constexpr int kFirst = 4;         // N at which a search begins
 constexpr double kMargin = 1.1;   // more than the error's order asks for
 constexpr double kSure = 0.05;    // pixels: a displacement of that or less is that of the image looked for
@@ -28,11 +29,9 @@ struct Span {
     bool breaks_low = false, breaks_high = false;
 
     double line(int i) const { return i == cells ? high : low + (high - low) * i / cells; }
-    /// Where the ray of that line is taken.
-    double inside(int i, double film) const {
-        if (i == 0 && breaks_low) return low + kNudge * film;
-        if (i == cells && breaks_high) return high - kNudge * film;
-        return line(i);
+    /// Where rays are taken: not on a break, but on its own side.
+    Vec2 inside(double film) const {
+        return {breaks_low ? low + kNudge * film : low, breaks_high ? high - kNudge * film : high};
     }
 };
 
@@ -51,6 +50,11 @@ std::vector<Span> make_spans(std::vector<double> breaks, double size, int n) {
     return spans;
 }
 
+FilmBlock block_of(const CameraModel& model, const FilmSize& film, const Span& across, const Span& down) {
+    const Vec2 x = across.inside(film.width), y = down.inside(film.height);
+    return {model, {x[0], y[0]}, {x[1], y[1]}};
+}
+
 /// The cells between two breaks in x and two in y.
 void append_block(RayMesh& mesh, const CameraModel& model, const FilmSize& film, const Span& across,
                   const Span& down) {
@@ -58,33 +62,33 @@ void append_block(RayMesh& mesh, const CameraModel& model, const FilmSize& film,
                       rows = static_cast<std::size_t>(down.cells) + 1, first = mesh.rays.size();
     mesh.rays.resize(first + columns * rows);
     mesh.screen.resize(first + columns * rows);
-    std::vector<char> own(columns * rows);  // has a ray where the grid put it
+    const FilmBlock block = block_of(model, film, across, down);
     parallel_for(rows, 8, [&](std::size_t from, std::size_t to) {
         for (std::size_t j = from; j < to; ++j)
             for (std::size_t i = 0; i < columns; ++i) {
-                const int column = static_cast<int>(i), row = static_cast<int>(j);
-                Vec2 screen(across.line(column), down.line(row));
-                std::optional<Ray> ray =
-                    model.ray({across.inside(column, film.width), down.inside(row, film.height)});
-                own[j * columns + i] = ray.has_value();
-                if (!ray) ray = model.ray(screen = model.nearest_with_ray(screen));
+                const Vec2 screen(across.line(static_cast<int>(i)), down.line(static_cast<int>(j)));
                 mesh.screen[first + j * columns + i] = Vec3(screen, 1);
-                if (ray) mesh.rays[first + j * columns + i] = *ray;
+                mesh.rays[first + j * columns + i] = block.ray(screen).value_or(Ray{});
             }
     });
-    const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-        for (const std::size_t corner : {a, b, c})
-            if (mesh.rays[first + corner].direction == Vec3(0)) return;
-        mesh.facets.push_back(
-            {static_cast<Id>(first + a), static_cast<Id>(first + b), static_cast<Id>(first + c)});
+    const std::size_t cells = static_cast<std::size_t>(across.cells) * static_cast<std::size_t>(down.cells);
+    const auto cell_at = [&](std::size_t cell) {
+        const int i = static_cast<int>(cell % static_cast<std::size_t>(across.cells)),
+                  j = static_cast<int>(cell / static_cast<std::size_t>(across.cells));
+        return FilmCell{{across.line(i), down.line(j)}, {across.line(i + 1), down.line(j + 1)}};
     };
-    for (std::size_t j = 0; j + 1 < rows; ++j)
-        for (std::size_t i = 0; i + 1 < columns; ++i) {
-            const std::size_t a = j * columns + i, b = a + 1, c = b + columns, d = a + columns;
-            if (!own[a] && !own[b] && !own[c] && !own[d]) continue;
-            add(a, b, c);
-            add(a, c, d);
-        }
+    std::vector<CellRays> has(cells);
+    parallel_for(cells, 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t cell = from; cell < to; ++cell) has[cell] = rays_in(block, cell_at(cell));
+    });
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        if (has[cell] == CellRays::kPartly) add_cut_cell(block, cell_at(cell), mesh);
+        if (has[cell] != CellRays::kEverywhere) continue;
+        const std::size_t a = first + cell / (columns - 1) * columns + cell % (columns - 1), b = a + 1,
+                          c = b + columns, d = a + columns;
+        mesh.facets.push_back({static_cast<Id>(a), static_cast<Id>(b), static_cast<Id>(c)});
+        mesh.facets.push_back({static_cast<Id>(a), static_cast<Id>(c), static_cast<Id>(d)});
+    }
 }
 
 Vec2 offset(const CameraModel& model, const Vec2& at, const Vec2& place) {
@@ -94,40 +98,66 @@ Vec2 offset(const CameraModel& model, const Vec2& at, const Vec2& place) {
     return off;
 }
 
+/// How a point at t of the camera's rays moves with the place, per pixel along an axis: to the side that has
+/// rays, beside a border.
+std::optional<Vec3> slope_along(const CameraModel& model, const Vec2& place, int axis, double t) {
+    const std::optional<Ray> here = model.ray(place);
+    for (const double step : {kStep, -kStep}) {
+        Vec2 beside = place;
+        beside[axis] += step;
+        const std::optional<Ray> there = model.ray(beside);
+        if (!here || !there) continue;
+        return (there->origin - here->origin + t * (there->direction - here->direction)) / step;
+    }
+    return std::nullopt;
+}
+
 /// Where near `at` an exact ray passes the point, by Newton's method; `t`: about where along it. None where
 /// it does not converge within the film's neighbourhood.
 std::optional<Vec2> place_near(const CameraModel& model, const Vec2& at, const Vec3& point, double t) {
     Vec2 place = at;
     for (int round = 0; round < kRounds; ++round) {
-        const auto here = model.ray(place), right = model.ray(place + Vec2(kStep, 0)),
-                   below = model.ray(place + Vec2(0, kStep));
-        if (!here || !right || !below) return std::nullopt;
-        const auto along = [&](const Ray& ray) {
-            return (ray.origin - here->origin + t * (ray.direction - here->direction)) / kStep;
-        };
-        const Mat3 slopes(along(*right), along(*below), here->direction);
+        const auto here = model.ray(place);
+        const auto along_x = slope_along(model, place, 0, t), along_y = slope_along(model, place, 1, t);
+        if (!here || !along_x || !along_y) return std::nullopt;
+        const Mat3 slopes(*along_x, *along_y, here->direction);
         const Vec3 left = point - here->origin - t * here->direction, step = inverse(slopes) * left;
         if (!(length(Vec2(step)) < kFarStep)) return std::nullopt;
-        place += Vec2(step);
+        Vec2 move(step);
+        while (length(move) > kFound && !model.ray(place + move)) move *= 0.5;  // beyond the border
+        place += move;
         t += step.z;
         if (length(Vec2(step)) < kFound) return place;
+        if (length(move) <= kFound) return std::nullopt;
     }
     return std::nullopt;
+}
+
+/// What lies around a place, eight ways at half of kFoldReach and at all of it.
+template <class Use>
+void for_each_around(const Vec2& at, const Use& use) {
+    for (int k = 0; k < 8; ++k)
+        for (const double reach : {0.5 * kFoldReach, kFoldReach}) {
+            const double angle = 0.25 * 3.14159265358979323846 * k;
+            use(at + reach * Vec2(std::cos(angle), std::sin(angle)));
+        }
 }
 
 /// Whether the picture of what lies at t turns over near that place: there displacements have no bound.
 bool folds_near(const CameraModel& model, const Vec2& at, double t) {
     bool positive = false, negative = false;
-    for (int k = 0; k < 8; ++k)
-        for (const double reach : {0.5 * kFoldReach, kFoldReach}) {
-            const double angle = 0.25 * 3.14159265358979323846 * k;
-            const auto spread =
-                film_spread(model, at + reach * Vec2(std::cos(angle), std::sin(angle)), kStep);
-            if (!spread) continue;
-            for (const double depth : {0.9 * t, t, 1.1 * t})
-                (spread->at(depth) > 0 ? positive : negative) = true;
-        }
+    for_each_around(at, [&](const Vec2& place) {
+        const auto spread = film_spread(model, place, kStep);
+        if (!spread) return;
+        for (const double depth : {0.9 * t, t, 1.1 * t}) (spread->at(depth) > 0 ? positive : negative) = true;
+    });
     return positive && negative;
+}
+
+bool borders_near(const CameraModel& model, const Vec2& at) {
+    bool any = false;
+    for_each_around(at, [&](const Vec2& place) { any = any || !model.ray(place); });
+    return any;
 }
 
 /// A point that the mesh's ray passes.
@@ -148,8 +178,9 @@ std::optional<double> displacement(const CameraModel& model, const Vec2& at, con
     }
     if (!nearest || *nearest <= kSure) return nearest;
     // Of several images the place that was found may be another.
-    if (const auto local = place_near(model, at, passed.point, passed.t))
-        nearest = std::min(*nearest, length(offset(model, at, *local)));
+    const auto local = place_near(model, at, passed.point, passed.t);
+    if (!local && borders_near(model, at)) return std::nullopt;
+    if (local) nearest = std::min(*nearest, length(offset(model, at, *local)));
     if (*nearest > kSure && folds_near(model, at, passed.t)) return std::nullopt;
     return nearest;
 }
@@ -176,7 +207,8 @@ FilmError film_error(const CameraModel& model, const FilmSize& film, const RayMe
                 const Vec2 at(screen.x, screen.y);
                 if (at.x < 0 || at.y < 0 || at.x > film.width || at.y > film.height) continue;
                 const Ray ray = interpolated_ray(mesh, f, weights);
-                for (const double t : {model.focus(), kFarAway * model.focus()}) {
+                for (const double depth : kDepths) {
+                    const double t = depth * model.focus();
                     const auto pixels = displacement(model, at, {ray.origin + t * ray.direction, t});
                     if (pixels && *pixels > of_facet[f].pixels) of_facet[f] = {*pixels, at};
                 }

@@ -9,14 +9,15 @@
 namespace trilens {
 
 /// About n x n cells of two facets; lines of the grid run along the camera's breaks, where corners are
-/// double, each with the ray of its own side. Screens are affine (w = 1). Where cells reach beyond the part
-/// of the film that has rays, their corners move to its border; cells without any ray are left out.
+/// double, each with the ray of its own side. Screens are affine (w = 1). Of cells that reach beyond the part
+/// of the film that has rays that part is left, cut finer along its border (see add_cut_cell).
 RayMesh make_film_mesh(const CameraModel& model, const FilmSize& film, int n);
 
 /// How far the mesh is from the exact rays: for the middles of every facet and of its edges, the points that
 /// the mesh's ray passes at the camera's focus and far away, and where the exact camera shows them. In x a
 /// pixel counts as CameraModel::stretch says. Places within 8 pixels of a fold of the camera's own picture,
-/// where a displacement has no bound, are not judged.
+/// where a displacement has no bound, are not judged, nor those as near to where rays end at which no exact
+/// ray is found to pass the point.
 struct FilmError {
     double pixels = 0;  // the largest
     Vec2 at{0};         // where on the film

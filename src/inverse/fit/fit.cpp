@@ -324,6 +324,7 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     Json document = resolved_json(scene);
     const std::vector<FitParameter> parameters =
         find_parameters(document, request.free, file, extent_of(scene, pairs));
+    require_same_scene(scene, request.free);
     const std::vector<FitProblem::Prior> priors = find_priors(request, document, parameters, file);
     if (2 * pairs.size() + priors.size() < parameters.size())
         throw InputError(file, "",

@@ -45,6 +45,10 @@ struct FitParameter {
 std::vector<FitParameter> find_parameters(Json& document, std::span<const std::string> pointers,
                                           const std::string& file, double extent);
 
+/// Throws InputError with the pointer where the keys that find_parameters adds make another scene, or none: a
+/// primitive's radius where a mesh has points.
+void require_same_scene(const Scene& scene, std::span<const std::string> free);
+
 /// The part's JSON in the document.
 Json& part_of(Json& document, const FitParameter& parameter);
 const Json& part_of(const Json& document, const FitParameter& parameter);

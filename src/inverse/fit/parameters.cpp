@@ -10,6 +10,8 @@
 #include "base/util/format.h"
 #include "base/util/names.h"
 #include "json/schema.h"
+#include "scene/parameters.h"
+#include "scene/read/override.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -201,6 +203,23 @@ std::vector<FitParameter> find_parameters(Json& document, std::span<const std::s
     for (const FitParameter& parameter : found)
         if (!names.insert(parameter.name).second) fail_at(file, parameter.name, "is free twice");
     return found;
+}
+
+void require_same_scene(const Scene& scene, std::span<const std::string> free) {
+    const std::string file = scene_title(scene);
+    const Json before = resolved_json(scene);
+    for (const std::string& pointer : free) {
+        Json document = before;
+        find_parameters(document, std::span(&pointer, 1), file, 1);
+        if (document == before) continue;
+        std::string why = "the scene is another";
+        try {
+            if (is_same_scene(scene, document.dump())) continue;
+        } catch (const InputError& error) {
+            why = error.what();
+        }
+        throw InputError(file, pointer, "is not in the scene, and with its default there: " + why);
+    }
 }
 
 Json& part_of(Json& document, const FitParameter& parameter) {

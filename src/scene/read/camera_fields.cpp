@@ -158,8 +158,12 @@ CameraFields fineness_fields() {
     };
     return {
         not_linear(std::move(facets)),
-        not_linear(setting("tolerance", &Camera::tolerance, ref("positive"),
-                           "Pixels: as many facets as leave no place further off; instead of facets."))
+        not_linear(
+            setting("tolerance", &Camera::tolerance, ref("positive"),
+                    "Pixels: as many facets as leave no place further off, at the distance of `at` and far "
+                    "away, but within 8 pixels of folds of the camera's own picture, where places have no "
+                    "bound; along a panorama's rows near its poles a pixel counts as the angle it stands "
+                    "for. Instead of facets."))
             .without_default(),
         of_mesh("points", list_of(ref("vec3"), 3), "rayMesh: origin of each corner's ray."),
         of_mesh("directions", list_of(ref("vec3"), 3),
