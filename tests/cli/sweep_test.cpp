@@ -159,8 +159,10 @@ TEST_CASE("a camera's own facets are an axis: what it sees itself comes nearer w
     for (const auto& [name, camera] : cameras) {
         INFO(name);
         const std::string out = folder + "/" + name;
+        // Along a circle's border facets are finer, however few there are, which large ones all reach.
+        const std::string facets = name == "fisheye" ? "24..192:x2" : "6..48:x2";
         const CommandRun run = run_trilens("sweep run " + scene_with(name, camera) +
-                                           " --over camera-facets=6..48:x2 --json -o " + out);
+                                           " --over camera-facets=" + facets + " --json -o " + out);
         REQUIRE(run.exit_code == 0);
         const std::vector<double> error = column(out, "disp_mean_px");
         REQUIRE(error.size() == 4);

@@ -66,6 +66,7 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens][b
         only_errors("parse_numbers", [&] { parse_numbers(text, text, {2, text, text}); });
         only_errors("find_numbers", [&] { find_numbers(callers_scene(), std::vector{text}); });
         only_errors("scene_with", [&] { scene_with(callers_scene(), {text, 1}); });
+        only_errors("is_same_scene", [&] { is_same_scene(callers_scene(), text); });
         only_errors("require_distinct_names", [&] { require_distinct_names(std::vector{text, text}); });
         only_errors("parse_frames", [&] { parse_frames(text); });
         only_errors("frame_file", [&] { frame_file(text, -2147483647 - 1); });

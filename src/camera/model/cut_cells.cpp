@@ -9,32 +9,37 @@
 namespace trilens {
 namespace {
 
-constexpr double kApart = 8;            // pixels between places that are asked
-constexpr int kMostPlaces = 32;         // along a side
-constexpr double kStraight = 1e-3;      // pixels that a border may lie beside a straight line
-constexpr double kLeastSide = 1. / 16;  // pixels: smaller cells are not divided
-constexpr int kEdgeHalvings = 50;       // of an edge that the border crosses
-constexpr double kNoArea = 1e-9;        // pixels^2
+constexpr double kApart = 8;                                 // pixels between places that are asked
+constexpr int kMostPlaces = 32;                              // along a side
+constexpr double kStraight = 1e-3, kStraightOfFilm = 1e-7;   // pixels, or of the film: what is straight
+constexpr double kLeastSide = 1. / 16, kLeastOfFilm = 1e-6;  // likewise: of cells that are divided
+constexpr int kMostLevels = 24;
+constexpr int kEdgeHalvings = 50;  // of an edge that the border crosses
+constexpr double kNoArea = 1e-9;   // pixels^2
 
 int places_along(double side) {
-    return std::clamp(static_cast<int>(std::ceil(side / kApart)), 2, kMostPlaces);
+    return static_cast<int>(std::clamp(std::ceil(side / kApart), 2.0, double(kMostPlaces)));
 }
 
 class CellCutter {
   public:
-    CellCutter(const FilmBlock& block, RayMesh& mesh) : block_(block), mesh_(mesh) {}
+    CellCutter(const FilmBlock& block, RayMesh& mesh)
+        : block_(block),
+          mesh_(mesh),
+          straight_(std::max(kStraight, kStraightOfFilm * block.size)),
+          least_side_(std::max(kLeastSide, kLeastOfFilm * block.size)) {}
 
-    void cut(const FilmCell& cell) {
+    void cut(const FilmCell& cell, int level = 0) {
         const CellRays rays = rays_in(block_, cell);
         if (rays == CellRays::kNowhere) return;
         const std::array<Vec2, 4> corner{cell.low, Vec2(cell.high.x, cell.low.y), cell.high,
                                          Vec2(cell.low.x, cell.high.y)};
         if (rays == CellRays::kEverywhere) return add({corner.begin(), corner.end()});
         const Vec2 side = cell.high - cell.low;
-        const bool is_least = std::max(side.x, side.y) <= kLeastSide;
+        const bool is_least = level == kMostLevels || std::max(side.x, side.y) <= least_side_;
         const Outline outline = outline_of(corner);
         if (is_least || is_straight(outline)) return add(outline.places);
-        divide(cell, side);
+        divide(cell, side, level + 1);
     }
 
   private:
@@ -46,7 +51,7 @@ class CellCutter {
 
     bool has(const Vec2& at) const { return block_.ray(at).has_value(); }
 
-    void divide(const FilmCell& cell, const Vec2& side) {
+    void divide(const FilmCell& cell, const Vec2& side, int level) {
         const Vec2 middle = 0.5 * (cell.low + cell.high);
         const bool across = side.x > 0.5 * side.y, down = side.y > 0.5 * side.x;
         for (int j = 0; j <= int(down); ++j)
@@ -54,7 +59,7 @@ class CellCutter {
                 FilmCell part = cell;
                 if (across) (i == 0 ? part.high : part.low).x = middle.x;
                 if (down) (j == 0 ? part.high : part.low).y = middle.y;
-                cut(part);
+                cut(part, level);
             }
     }
 
@@ -85,8 +90,8 @@ class CellCutter {
         if (outline.crossings.size() != 2) return false;
         const Vec2 &from = outline.crossings[0], &to = outline.crossings[1];
         const Vec2 middle = 0.5 * (from + to), way = to - from;
-        if (!(length(way) > kStraight)) return true;
-        Vec2 inward = Vec2(-way.y, way.x) * (kStraight / length(way));
+        if (!(length(way) > straight_)) return true;
+        Vec2 inward = Vec2(-way.y, way.x) * (straight_ / length(way));
         if (dot(inward, outline.inside - middle) < 0) inward = -inward;
         return has(middle + inward) && !has(middle - inward);
     }
@@ -106,6 +111,7 @@ class CellCutter {
 
     const FilmBlock& block_;
     RayMesh& mesh_;
+    double straight_ = 0, least_side_ = 0;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace trilens {
 struct FilmBlock {
     const CameraModel& model;
     Vec2 low{0}, high{0};
+    double size = 1;  // of the film's longer side
 
     std::optional<Ray> ray(const Vec2& at) const { return model.ray(glm::clamp(at, low, high)); }
 };
@@ -28,7 +29,7 @@ enum class CellRays { kNowhere, kPartly, kEverywhere };
 CellRays rays_in(const FilmBlock& block, const FilmCell& cell);
 
 /// Adds the part of the cell that has rays, as facets with corners of their own, to within a thousandth of a
-/// pixel of its border. Borders of neighbouring cells fit together without gaps.
+/// pixel, or 1e-7 of the film, of its border. Borders of neighbouring cells fit together without gaps.
 void add_cut_cell(const FilmBlock& block, const FilmCell& cell, RayMesh& mesh);
 
 }  // namespace trilens

@@ -52,7 +52,7 @@ std::vector<Span> make_spans(std::vector<double> breaks, double size, int n) {
 
 FilmBlock block_of(const CameraModel& model, const FilmSize& film, const Span& across, const Span& down) {
     const Vec2 x = across.inside(film.width), y = down.inside(film.height);
-    return {model, {x[0], y[0]}, {x[1], y[1]}};
+    return {model, {x[0], y[0]}, {x[1], y[1]}, std::max(film.width, film.height)};
 }
 
 /// The cells between two breaks in x and two in y.
