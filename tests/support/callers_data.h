@@ -6,6 +6,7 @@
 #include <limits>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "base/util/error.h"
 #include "support/test.h"
@@ -20,6 +21,10 @@ inline constexpr std::array kOddNumbers{0.0,   -1.0,   kNaN,   kInfinity, -kInfi
                                         1e308, -1e308, 1e-308, 1e30,      0.5};
 inline constexpr std::array kOddInts{0,     -1,    1,     -2147483647 - 1, 2147483647, 65536,
                                      50000, 46341, 46340, 1 << 30,         -(1 << 30)};
+
+/// Texts that are none, or nearly.
+inline const std::vector<std::string> kOddTexts{"",   "#",   "\xff\xfe", "1e999", "nan",
+                                                "-1", "a/b", "..",       "{",     std::string(3, '\0')};
 
 /// Calls it: it may throw an Error or std::bad_alloc, and nothing else. A signal ends the test, which then
 /// names `what`.

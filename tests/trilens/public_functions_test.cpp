@@ -186,7 +186,7 @@ std::set<std::string> public_functions() {
 TEST_CASE("every public function meets what is no data", "[trilens][bad-input]") {
     std::string tests;
     for (const char* file : {"/tests/trilens/callers_data_test.cpp", "/tests/trilens/callers_images_test.cpp",
-                             "/tests/core/callers_data_test.cpp"}) {
+                             "/tests/trilens/callers_lenses_test.cpp", "/tests/core/callers_data_test.cpp"}) {
         std::ifstream in(source_dir() + file);
         std::stringstream text;
         text << in.rdbuf();
