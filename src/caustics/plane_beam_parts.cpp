@@ -72,6 +72,7 @@ struct PlaneBeams::PartsMaker {
     void make() {
         const BeamEnds& end = corners_of(source.beams, source.beams.beams[index]).end;
         add(end, source.refined.side_middles(index), 0);
+        if (traced.empty()) return;
         std::set<const BeamEnd*> needed;
         for (const Curved& one : parts.curved) needed.insert(one.corners.end.begin(), one.corners.end.end());
         for (const Flat& one : parts.flat) needed.insert(one.corners.end.begin(), one.corners.end.end());
