@@ -69,7 +69,7 @@ Unknown unknown_of(Choices& choose, const Scene& scene) {
     unknown.beside = choose.of(std::array{0.0, kNearTruth, 1e-2});
     const std::string& json = scene.resolved;
     const bool has_eye = json.find("\"lookAt\"") != std::string::npos;
-    const bool has_place = json.find("\"primitive\"") != std::string::npos;
+    const bool has_place = !scene.meshes.empty() && scene.meshes.front().primitive.has_value();
     switch (choose.below(4)) {
         case 0:
             if (has_place) unknown.pointers.push_back("/meshes/0/primitive/center");
@@ -78,10 +78,10 @@ Unknown unknown_of(Choices& choose, const Scene& scene) {
             if (has_eye) unknown.pointers.push_back("/cameras/0/lookAt/eye");
             break;
         case 2:
-            unknown.pointers = {"/meshes/0/primitive/center", "/meshes/0/primitive/radius"};
+            if (has_place) unknown.pointers = {"/meshes/0/primitive/center", "/meshes/0/primitive/radius"};
             break;
         default:
-            unknown.pointers = {"/cameras/0/yfov"};
+            if (json.find("\"yfov\"") != std::string::npos) unknown.pointers = {"/cameras/0/yfov"};
     }
     if (unknown.pointers.empty()) unknown.pointers.push_back("/meshes/0/transform/translate");
     return unknown;
