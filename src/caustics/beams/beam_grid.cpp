@@ -33,6 +33,9 @@ constexpr double kFinerTruth = 16;
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
 
+/// Light at a base's middle that is so much of the most off that between its ends has a kink there.
+constexpr double kUnevenLight = 0.02;
+
 /// Whether every history of one that carries so much is one of the other.
 bool has_all(const std::vector<LightPath>& paths, const std::vector<LightPath>& of, double least) {
     return std::all_of(of.begin(), of.end(), [&](const LightPath& path) {
@@ -80,7 +83,8 @@ void BeamGrid::trace_new_corners(const Progress& progress) {
     });
     for (std::size_t i = traced_; i < places_.size(); ++i)
         for (const LightPath& path : paths_[i].paths)
-            brightest_ = std::max(brightest_, strength_of(path.light));
+            brightest_ = std::max(brightest_, strength_of(path.light)),
+            most_arriving_ = std::max(most_arriving_, strength_of(path.arriving));
     traced_ = places_.size();
 }
 
@@ -200,6 +204,18 @@ bool BeamGrid::is_mixed(const Triangle& triangle, double least) const {
     return differ(a, b) || differ(a, middles_.at(edge_of(a, b))) || differ(a, c);
 }
 
+/// Whether what comes to the first optic turns along its base: at the edges of a spot's cone, where light is
+/// no straight line, and no quadratic either.
+bool BeamGrid::is_unevenly_lit(const Triangle& triangle) const {
+    const auto arriving = [&](Id corner) {
+        return paths(corner).empty() ? Vec3(0) : paths(corner).front().arriving;
+    };
+    const Id a = triangle.corner[0], b = triangle.corner[1], middle = middles_.at(edge_of(a, b));
+    if (paths(a).empty() || paths(b).empty() || paths(middle).empty()) return false;  // a border's
+    const Vec3 bend = 0.5 * (arriving(a) + arriving(b)) - arriving(middle);
+    return strength_of(glm::abs(bend)) > kUnevenLight * most_arriving_;
+}
+
 /// Those at both ends of its base and in its middle that are not where they should be there.
 std::vector<BeamGrid::SideHistory> BeamGrid::uneven_histories(const Triangle& triangle) const {
     const Id a = std::min(triangle.corner[0], triangle.corner[1]),
@@ -228,8 +244,9 @@ std::vector<char> BeamGrid::are_too_coarse(std::span<const Id> asked, const Prog
         for (std::size_t i = from; i < to; ++i) {
             const Triangle& triangle = triangles_[asked[i]];
             uneven[i] = uneven_histories(triangle);
+            coarse[i] = triangle.level < params_.lit_levels && is_unevenly_lit(triangle);
             if (triangle.level >= params_.mixed_levels) continue;
-            coarse[i] = !uneven[i].empty() || is_mixed(triangle, kFaintLight * brightest_);
+            coarse[i] |= !uneven[i].empty() || is_mixed(triangle, kFaintLight * brightest_);
             uneven[i].clear();
         }
     });
@@ -291,7 +308,7 @@ BeamGridParams BeamGridParams::within(double tolerance) {
     BeamGridParams params;
     const double times = std::max(1.0, params.tolerance / tolerance);
     const int more = static_cast<int>(std::ceil(std::log2(times)));
-    params.most_levels += more, params.mixed_levels += more;
+    params.most_levels += more, params.mixed_levels += more, params.lit_levels += more;
     params.most_triangles =
         static_cast<std::size_t>(std::min(times, kMostTimes) * static_cast<double>(params.most_triangles));
     params.tolerance = tolerance;

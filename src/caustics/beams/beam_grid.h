@@ -23,6 +23,7 @@ struct BeamGridParams {
     int first_cells = 24;     // squares along each side of the window to begin with
     int most_levels = 11;     // bisections of one of its triangles
     int mixed_levels = 4;     // of one whose corners have different histories
+    int lit_levels = 8;       // of one in which the light that comes turns, as where a cone ends
     double tolerance = 1e-3;  // how far light may fall from its place, as a share of the scene's size
     std::size_t most_triangles = 16'000;  // and a quarter more where histories hide
 
@@ -96,6 +97,7 @@ class BeamGrid {
     void trace_new_corners(const Progress& progress);
     Id middle_of(Id a, Id b);
     bool is_mixed(const Triangle& triangle, double least) const;
+    bool is_unevenly_lit(const Triangle& triangle) const;
     std::vector<SideHistory> sides_with(const LightPath& like, Id triangle) const;
     std::vector<SideHistory> uneven_histories(const Triangle& triangle) const;
     std::vector<char> are_too_coarse(std::span<const Id> triangles, const Progress& progress);
@@ -135,6 +137,7 @@ class BeamGrid {
     std::map<SideHistory, std::optional<HistoryTear>> tears_;
     double faint_ = 0;      // irradiance, the sum of its colours, that may fall beside its place
     double brightest_ = 0;  // path so far: the sum of its colours
+    double most_arriving_ = 0;  // of all paths so far
     std::size_t coarse_ = 0;
 };
 
