@@ -63,7 +63,7 @@ struct LocalFrame {
 TexturePlaces places_on_primitive(const Primitive& primitive) {
     const Vec3 axis = normalize_or_zero(primitive.axis);
     const Vec3 side = normalize_or_zero(cross(axis, primitive.tangent));
-    const LocalFrame frame{cross(side, axis), side, axis};
+    const LocalFrame frame{cross(side, axis), primitive.is_mirrored ? -side : side, axis};
     return [primitive, frame](Id, const Vec2&, const SurfacePoint& at) {
         const Vec3 off = at.position - primitive.center;
         const Vec3 p(dot(off, frame.x), dot(off, frame.y), dot(off, frame.z));

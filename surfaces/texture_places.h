@@ -24,7 +24,7 @@ struct TexturePlace {
 using TexturePlaces = std::function<TexturePlace(Id face, const Vec2& parameters, const SurfacePoint& at)>;
 
 /// u around the axis from the tangent and v along it, 0 to 1 each; of a plane along tangent and axis x
-/// tangent: as on an object that is such a primitive.
+/// tangent: as on an object that is such a primitive. Of one that is mirrored the other way round.
 TexturePlaces places_on_primitive(const Primitive& primitive);
 
 /// The face of a cage that a face of its surface is of.

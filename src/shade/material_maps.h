@@ -12,7 +12,7 @@ namespace trilens {
 /// A material's pictures with their means; null where it has none.
 struct MaterialMips {
     std::shared_ptr<const MipMap> base_color, metallic_roughness, occlusion, emissive;
-    std::shared_ptr<const MipMap> normal;  // unit normals, not texels: normals_of() of the picture
+    std::shared_ptr<const MipMap> normal;  // means of unit normals, not texels: normals_of() of the picture
     // What `normal` was made of.
     std::shared_ptr<const Texture> normal_picture;
     double normal_scale = 1;
@@ -28,7 +28,12 @@ struct MapTexels {
     double normal_length = 1;  // of the mean of unit normals: below 1 where they differ within the footprint
 };
 
-/// The unit normals of a normal map's texels, slopes times `scale`: red, green and blue are x, y and z.
+/// The unit normal that a normal map shows where its texels, or what lies between them, have this value; its
+/// slopes times `scale`. Zero where it shows none.
+Vec3 normal_of_texel(const Vec3& texel, double scale);
+
+/// Of each texel's area the mean of the unit normals that the map shows there, at the middles of its quarters
+/// between the texels (repeated at its edges): red, green and blue are x, y and z.
 std::shared_ptr<const Texture> normals_of(const Texture& map, double scale);
 
 /// The roughness of a surface whose normals, within what is seen as one, have a mean of this length. Normals

@@ -56,6 +56,12 @@ Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen, const Tex
     return footprint;
 }
 
+Footprint stepped_footprint(const ShadeScene& scene, const SeenAlong& seen, const TextureSampler& sampler) {
+    Footprint footprint = uv_footprint(scene, seen, sampler);
+    for (Vec2& side : footprint) side = sampler.step(side);
+    return footprint;
+}
+
 /// A picture that is there.
 struct LookedUp {
     const Texture& picture;
@@ -71,24 +77,26 @@ Vec3 look_up(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips,
     const TextureSampler& sampler = texture.sampler;
     const Vec2 place = sampler.place(uv_at(scene, *seen.hit, sampler));
     if (!mips) return lookup(texture.picture, sampler, place);
-    Footprint footprint = uv_footprint(scene, seen, sampler);
-    for (Vec2& side : footprint) side = sampler.step(side);
-    return lookup(*mips, sampler, place, footprint);
+    return lookup(*mips, sampler, place, stepped_footprint(scene, seen, sampler));
 }
 
 /// A normal map there: its own normal and how long the mean of those in the footprint is.
 void look_up_normal(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips, MapTexels& texels) {
     const Material& material = material_of(scene, *seen.hit);
-    Vec3 normal;
+    const TextureSampler& sampler = material.normal_texture.sampler;
+    const auto normal_at = [&](const Vec2& place) {
+        return normal_of_texel(lookup(*material.normal_texture.picture, sampler, place),
+                               material.normal_scale);
+    };
+    const Vec2 place = sampler.place(uv_at(scene, *seen.hit, sampler));
+    Vec3 mean;
     if (mips) {
-        normal = look_up(scene, seen, mips, placed(material.normal_texture));
-        texels.normal_length = std::min(length(normal), 1.0);
+        mean = lookup(*mips, sampler, {place, stepped_footprint(scene, seen, sampler)}, normal_at);
+        texels.normal_length = std::min(length(mean), 1.0);
     } else {
-        const Vec3 texel = look_up(scene, seen, nullptr, placed(material.normal_texture));
-        normal = {material.normal_scale * (2 * texel.x - 1), material.normal_scale * (2 * texel.y - 1),
-                  2 * texel.z - 1};
+        mean = normal_at(place);
     }
-    normal = normalize_or_zero(normal);
+    const Vec3 normal = normalize_or_zero(mean);
     if (normal != Vec3(0)) texels.normal = normal;
 }
 

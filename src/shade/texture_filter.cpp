@@ -107,12 +107,11 @@ Lattice lattice_over(const Footprint& sides) {
     return lattice;
 }
 
-Vec3 mean_of_lookups(const Texture& texture, const TextureSampler& wrap, const Vec2& middle,
-                     const Lattice& lattice) {
+template <typename At>
+Vec3 mean_of_lookups(const Vec2& middle, const Lattice& lattice, const At& at) {
     Vec3 sum(0);
     for (int j = 0; j < lattice.counts[1]; ++j)
-        for (int i = 0; i < lattice.counts[0]; ++i)
-            sum += lookup(texture, wrap, middle + lattice.offset(i, j));
+        for (int i = 0; i < lattice.counts[0]; ++i) sum += at(middle + lattice.offset(i, j));
     return sum / double(lattice.size());
 }
 
@@ -129,7 +128,8 @@ Vec3 mean_at(const Texture& texture, const TextureSampler& wrap, const Vec2& mid
     const double columns = floor_of(at.x + reach.x) - left + 2, rows = floor_of(at.y + reach.y) - top + 2;
     // Far from a picture whose edges go on forever, its place is reduced to one picture away.
     if (!(columns * rows <= kMostWindow && reach.x <= texture.width && reach.y <= texture.height))
-        return mean_of_lookups(texture, wrap, middle, lattice);
+        return mean_of_lookups(middle, lattice,
+                               [&](const Vec2& place) { return lookup(texture, wrap, place); });
 
     std::array<double, kMostWindow> weights;
     const int width = static_cast<int>(columns), height = static_cast<int>(rows);
@@ -182,15 +182,22 @@ const Texture& MipMap::level(std::size_t level) const {
     })[level - 1];
 }
 
-Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint) {
+namespace {
+
+/// Where a footprint is looked at.
+struct Look {
+    std::size_t level = 0;  // of a mip map
+    Lattice lattice{};      // about its place
+};
+
+Look look_at(const MipMap& map, const Footprint& footprint) {
     const Vec2 texels(map.texture()->width, map.texture()->height);
     Footprint sides{footprint[0] * texels, footprint[1] * texels};
     Footprint turned = turned_square(sides[0], sides[1]);
     const double longer = length(turned[0]), shorter = length(turned[1]);
-    if (longer <= kPointTexels) return lookup(*map.texture(), wrap, place);
+    if (longer <= kPointTexels) return {};
     // Also where a side is no number: the mean of the whole picture.
-    if (!(longer < kMostTexels && shorter <= longer))
-        return lookup(map.level(map.level_count() - 1), wrap, place);
+    if (!(longer < kMostTexels && shorter <= longer)) return {map.level_count() - 1};
 
     // The finest level at which the footprint is less than twice as wide as it must be.
     std::size_t level = 0;
@@ -200,6 +207,7 @@ Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, co
         ++level;
         shrunk /= 2;
     }
+    if (level + 1 == map.level_count()) return {level};  // of one texel
     // A level's texels are means, and are interpolated: both blur, by this much of a side's square more than
     // the picture's own do. What is left of the rectangle's sides is left of the parallelogram along them.
     const double blur = 3 * (1 - shrunk * shrunk);
@@ -215,8 +223,26 @@ Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, co
     const Lattice of_sides = lattice_over(sides), of_turned = lattice_over(turned);
     const Lattice& lattice = of_sides.size() <= kMostSlanted * of_turned.size() ? of_sides : of_turned;
     const Vec2 to_place = 1.0 / (shrunk * texels);
-    return mean_at(map.level(level), wrap, place,
-                   {{lattice.steps[0] * to_place, lattice.steps[1] * to_place}, lattice.counts});
+    return {level, {{lattice.steps[0] * to_place, lattice.steps[1] * to_place}, lattice.counts}};
+}
+
+Vec3 mean_of(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Look& look) {
+    const Texture& texture = map.level(look.level);
+    return look.lattice.size() == 1 ? lookup(texture, wrap, place)
+                                    : mean_at(texture, wrap, place, look.lattice);
+}
+
+}  // namespace
+
+Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint) {
+    return mean_of(map, wrap, place, look_at(map, footprint));
+}
+
+Vec3 lookup(const MipMap& means, const TextureSampler& wrap, const FootprintAt& footprint,
+            const std::function<Vec3(const Vec2& place)>& at) {
+    const Look look = look_at(means, footprint.sides);
+    return look.level > 0 ? mean_of(means, wrap, footprint.place, look)
+                          : mean_of_lookups(footprint.place, look.lattice, at);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,17 @@ using Footprint = std::array<Vec2, 2>;
 /// small, else a texel at most. One that is more than 32 times as long as wide is widened. Sides of less than
 /// a twentieth of a texel are points. Against OpenImageIO's anisotropic look-ups, see docs/accuracy.md.
 Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint);
+
+/// A footprint and where it lies.
+struct FootprintAt {
+    Vec2 place{0};
+    Footprint sides{};
+};
+
+/// The mean of what at(place) shows, of which the picture has the means over texels: where that is less than
+/// a footprint asks for it is looked at place by place.
+Vec3 lookup(const MipMap& means, const TextureSampler& wrap, const FootprintAt& footprint,
+            const std::function<Vec3(const Vec2& place)>& at);
 
 /// Bilinear look-up of a latitude-longitude picture: the middle column is -Z, the right half +X, the top row
 /// +Y. `direction` need not be unit.

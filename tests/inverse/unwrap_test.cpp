@@ -86,6 +86,28 @@ TEST_CASE("a traced photograph of a mirror ball unwraps to the sky that it shows
     CHECK(off.worst < 0.05);
 }
 
+TEST_CASE("a mirror seen from its back unwraps as one seen from its front", "[inverse][law]") {
+    const auto unwrapped = [](const char* normal) {
+        const auto world =
+            make_world(parse_scene(std::string(R"({"version": 1, "film": {"width": 64, "height": 48},
+            "cameras": [{"yfov": 50, "lookAt": {"eye": [0, 0.3, 3], "at": [0, 0, 0]}}],
+            "materials": [{"name": "mirror", "metallicFactor": 1}, {"name": "white", "unlit": true}],
+            "meshes": [{"role": "optic", "material": "mirror", "resolution": 4,
+                        "primitive": {"type": "plane", "size": [2, 2], "normal": )") +
+                                   normal + R"(}},
+                       {"name": "wall", "role": "object", "material": "white",
+                        "primitive": {"type": "plane", "center": [0, 0, 5], "normal": [0, 0, -1], "size": [4, 4]}}]})"),
+                       ignore);
+        UnwrapRequest request;
+        request.target = {TargetKind::kObject, 30, 30};
+        request.target.object = 1;
+        return unwrap(*world, request, {{"photo", photograph(*world), 0}});
+    };
+    const Unwrapped front = unwrapped("[0, 0, 1]"), back = unwrapped("[0, 0, -1]");
+    CHECK(front.coverage > 0.5);
+    CHECK(back.coverage == Approx(front.coverage).epsilon(1e-9));
+}
+
 TEST_CASE("two photographs fill each other's blind cone; a mask leaves one out", "[inverse]") {
     const auto world = ball_under_sky(128, 128, 4, 256);
     const UnwrapPhoto front{"front", photograph(*world, 0), 0}, side{"side", photograph(*world, 1), 1};

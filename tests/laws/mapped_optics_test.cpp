@@ -52,6 +52,37 @@ const char* const kRipples = R"({"pattern": "ripples", "count": [8, 8], "heights
 
 }  // namespace
 
+TEST_CASE("a mirrored sphere with a normal map is the sphere's mirror image", "[laws][law]") {
+    const auto picture_of = [](double scale) {
+        const auto world = world_from("mirrored sphere",
+                                      R"({"version": 1, "film": {"width": 40, "height": 30},
+        "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 0.1, 3], "at": [0, 0, 0], "up": [0, 1, 0]}}],
+        "materials": [{"name": "chrome", "metallicFactor": 1, "normalTexture": {"pattern": "ripples",
+                        "count": [3, 2], "heights": true, "scale": 1, "transform": {"offset": [0.07, 0]}}},
+                      {"name": "wall", "unlit": true, "baseColorFactor": [0.2, 0.9, 0.4]}],
+        "meshes": [{"name": "ball", "role": "optic", "material": "chrome", "primitive": {"type": "sphere"},
+                    "transform": {"scale": [)" +
+                                          std::to_string(scale) +
+                                          R"(, 1, 1]}},
+                   {"name": "wall", "role": "object", "material": "wall", "primitive": {"type": "plane",
+                     "center": [0, 0, 6], "normal": [0, 0, -1], "tangent": [1, 0, 0], "size": [4000, 4000]}}]})",
+                                      8);
+        return drawn(*world, Engine::kExact);
+    };
+    const Image one = picture_of(1), other = picture_of(-1);
+    std::size_t differ = 0, lopsided = 0;
+    for (std::size_t y = 0; y < 30; ++y)
+        for (std::size_t x = 0; x < 40; ++x) {
+            const Vec3 seen = seen_at(one, 40 * y + x), as_mirrored = seen_at(other, 40 * y + 39 - x),
+                       beside = seen_at(one, 40 * y + 39 - x);
+            if (seen == Vec3(0)) continue;  // not in the ball
+            differ += length(seen - Vec3(-as_mirrored.x, as_mirrored.y, as_mirrored.z)) > 1e-4 * length(seen);
+            lopsided += length(seen - Vec3(-beside.x, beside.y, beside.z)) > 0.1;
+        }
+    CHECK(differ == 0);
+    CHECK(lopsided > 10);
+}
+
 TEST_CASE("a rippled mirror shows what rays mirrored at its waves' slopes meet", "[laws][law]") {
     const auto world = mapped_mirror(kRipples, 8);
     const Image truth = drawn(*world, Engine::kLimitTruth);

@@ -159,3 +159,23 @@ TEST_CASE("degenerate but legal scenes render, with a word where the user would 
         }
     }
 }
+
+TEST_CASE("more reflections in one sphere are never proven absent for an eye inside of it", "[laws][law]") {
+    const auto projected = [](double distance) {
+        const auto world =
+            world_from("sphere",
+                       R"({"version": 1, "film": {"width": 40, "height": 30},
+            "cameras": [{"yfov": 60, "lookAt": {"eye": [0, 0.2, )" +
+                           std::to_string(distance) +
+                           R"(], "at": [0, 0, 0]}}], "materials": [{"name": "mirror", "metallicFactor": 1}],
+            "meshes": [{"role": "optic", "material": "mirror", "primitive": {"type": "sphere", "radius": 2}}]})",
+                       8);
+        ProjectRequest request;
+        request.path = EventWord("RR");
+        return project_points(*world, request,
+                              std::vector<Vec3>{{0.3, -0.2, 0.4}, {-0.5, 0.1, 0.2}, {3, 0, 3}});
+    };
+    // From outside no ray meets the sphere twice.
+    for (const PointProjection& point : projected(5)) CHECK((point.complete && point.images.empty()));
+    for (const PointProjection& point : projected(1.2)) CHECK(!point.complete);
+}

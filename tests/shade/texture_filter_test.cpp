@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "shade/material_maps.h"
 #include "support/draw.h"
 #include "support/test.h"
 
@@ -150,6 +151,51 @@ TEST_CASE("filtered look-ups stay finite and within the picture's values, whatev
         outside += !(value >= 0 && value <= 1 + 1e-15);  // but for rounding
     }
     CHECK(outside == 0);
+}
+
+TEST_CASE("a footprint of many repeats is the picture's mean, and asks no more than one of few",
+          "[shade][law][textures]") {
+    for (const auto& [width, height] : {std::pair(8, 8), {8, 1}, {1, 1}, {5, 3}}) {
+        const MipMap map(picture(width, height, [](double u, double v) { return u + 0.3 * v; }));
+        const double mean = mean_of(*map.texture());
+        // Texel by texel, the longest would take an hour.
+        for (const double repeats : {3e2, 1e5, 1e7}) {
+            CAPTURE(width, height, repeats);
+            const Footprint sides{Vec2(repeats, 0.1 * repeats), Vec2(-0.2 * repeats, repeats)};
+            CHECK(lookup(map, {}, Vec2(0.3, 0.7), sides).x == Approx(mean).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("a normal map's mean is that of the normals between its texels, too, whatever the footprint",
+          "[shade][law][textures]") {
+    Draw draw(71);
+    auto raw = std::make_shared<Texture>();
+    raw->width = raw->height = 32;
+    for (int i = 0; i < 32 * 32; ++i) {
+        const Vec3 normal = normalize(Vec3(draw.uniform(-1, 1), draw.uniform(-1, 1), 1));
+        for (int k = 0; k < 3; ++k) raw->rgb.push_back(static_cast<float>(0.5 + 0.5 * normal[k]));
+    }
+    const TextureSampler wrap{};
+    const auto at = [&](const Vec2& place) { return normal_of_texel(lookup(*raw, wrap, place), 1); };
+    const MipMap means(normals_of(*raw, 1));
+    double shortest = 1;
+    for (int trial = 0; trial < 200; ++trial) {
+        const Vec2 place(draw.uniform(0, 1), draw.uniform(0, 1));
+        const double texels = trial < 20 ? 0 : draw.log_uniform(0.01, 24), side = texels / 32;
+        Vec3 brute(0);
+        constexpr int kPlaces = 60;
+        for (int j = 0; j < kPlaces; ++j)
+            for (int i = 0; i < kPlaces; ++i)
+                brute += at(place + side * (Vec2(i + 0.5, j + 0.5) / double(kPlaces) - Vec2(0.5)));
+        brute /= double(kPlaces * kPlaces);
+        const Vec3 mean = lookup(means, wrap, {place, {Vec2(side, 0), Vec2(0, side)}}, at);
+        CAPTURE(texels, length(brute), length(mean));
+        if (texels < 0.05) CHECK(length(mean) == Approx(1).margin(1e-3));
+        CHECK(length(mean - brute) < (texels < 8 ? 0.02 : 0.04));
+        shortest = std::min(shortest, length(mean));
+    }
+    CHECK(shortest < 0.9);
 }
 
 TEST_CASE("pictures repeat, are mirrored, or end in their edges, as the sampler says", "[shade][textures]") {

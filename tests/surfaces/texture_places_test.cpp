@@ -57,6 +57,32 @@ Cage mixed_cage() {
 
 }  // namespace
 
+TEST_CASE("a mirrored primitive has the other's picture mirrored", "[surfaces][law]") {
+    Draw draw(41);
+    const auto mirrored = [](const Vec3& v) { return Vec3(-v.x, v.y, v.z); };
+    for (const PrimitiveKind& kind :
+         {PrimitiveKind(SpherePrimitive{1.3}), PrimitiveKind(CylinderPrimitive{0.7, 2}),
+          PrimitiveKind(ConePrimitive{0.7, 2}), PrimitiveKind(PlanePrimitive{{2, 3}}),
+          PrimitiveKind(ParaboloidPrimitive{})}) {
+        Primitive one{draw.unit(), draw.unit(), {}, kind};
+        one.tangent = normalize(cross(one.axis, draw.unit()));
+        Primitive other{mirrored(one.center), mirrored(one.axis), mirrored(one.tangent), kind, true};
+        CAPTURE(kind_name(one));
+        const auto surface = make_primitive_surface(one);
+        const TexturePlaces places = places_on_primitive(one), of_other = places_on_primitive(other);
+        for (int trial = 0; trial < 50; ++trial) {
+            const Vec2 p(draw.uniform(0.1, 0.4), draw.uniform(0.1, 0.4));
+            const SurfacePoint at = surface->eval(0, p);
+            SurfacePoint there = at;
+            there.position = mirrored(at.position), there.normal = mirrored(at.normal);
+            const TexturePlace place = places(0, p, at), mirror = of_other(0, p, there);
+            CHECK(length(place.uv - mirror.uv) < 1e-12);
+            CHECK(length(mirrored(place.along_u) - mirror.along_u) < 1e-12);
+            CHECK(length(mirrored(place.along_v) - mirror.along_v) < 1e-12);
+        }
+    }
+}
+
 TEST_CASE("u and v grow on primitives and cages where their directions say", "[surfaces][law]") {
     Draw draw(7);
     for (const PrimitiveKind& kind :

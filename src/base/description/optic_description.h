@@ -142,6 +142,7 @@ struct Primitive {
     Vec3 axis{0, 1, 0};     // unit
     Vec3 tangent{1, 0, 0};  // unit, at right angles to axis: where u begins
     PrimitiveKind kind = SpherePrimitive();
+    bool is_mirrored = false;  // whether u turns clockwise about the axis, as where a transform mirrors it
 };
 
 inline const char* kind_name(const Primitive& primitive) {

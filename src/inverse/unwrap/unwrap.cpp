@@ -11,7 +11,6 @@
 #include "inverse/maps/proxy.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/unwrap/photo.h"
-#include "render/frame/frame.h"
 #include "render/world/world.h"
 
 namespace trilens {
@@ -32,26 +31,6 @@ void check_photo(const World& world, const UnwrapPhoto& photo) {
         throw InputError(photo.name, "mask", "is not of the photograph's size");
     if (!(photo.exposure > 0) || !std::isfinite(photo.exposure))
         throw UsageError("a photograph's exposure is a positive number");
-}
-
-/// Throws where an eye sees no front of mirrors, and there is no glass: it stands inside or behind them.
-void check_front(const World& world, const UnwrapRequest& request, const UnwrapPhoto& photo) {
-    if (request.path == Path::kDirect) return;
-    const CameraRays camera = make_camera_rays(world.scene, photo.camera);
-    if (!camera.linear || camera.linear->parallel) return;
-    for (std::size_t o = 0; o < world.optics.size(); ++o) {
-        if (request.optic && *request.optic != o) continue;
-        if (!world.optics[o].mirror) return;
-        const auto facets = optic_facets(world, o, world.optics[o].resolution);
-        const SurfaceGrid& grid = facets->grid();
-        if (std::any_of(grid.facets.begin(), grid.facets.end(), [&](const IdTriple& facet) {
-                return faces_front(grid, facet,
-                                   grid.points[grid.corner_point[facet[0]]] - camera.linear->eye);
-            }))
-            return;
-    }
-    throw InputError(scene_title(world.scene), world.scene.cameras[photo.camera].name,
-                     "sees no front of the optic: it stands inside or behind it");
 }
 
 /// The output while photograph after photograph comes in.
@@ -217,7 +196,6 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
     if (request.rank < 1) throw UsageError("images are counted from 1, the best");
     for (const UnwrapPhoto& photo : photos) {
         check_photo(world, photo);
-        check_front(world, request, photo);
     }
     const Target target(request.target, world.scene);
     const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));

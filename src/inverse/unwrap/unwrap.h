@@ -63,8 +63,8 @@ struct Unwrapped {
 };
 
 /// Throws UsageError for a request that makes no sense (no photograph, a camera or optic that there is not),
-/// InputError for a photograph that is not of the film's size, a camera that sees no front of the optic, a
-/// target that no photograph shows; Interrupted.
+/// InputError for a photograph that is not of the film's size, a target that no photograph shows;
+/// Interrupted.
 Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::vector<UnwrapPhoto>& photos,
                  const Progress& progress = {});
 

@@ -60,8 +60,8 @@ struct WorldImage {
 struct PointProjection {
     std::vector<WorldImage> images;
     bool complete = false;  // proven: there is no other; never for paths over several optics, so it is false
-                            // where the scene may have any (maxDepth above 0, and more than one convex
-                            // mirror), unless a word of one event is asked for
+                            // where the scene may have any (maxDepth above 0, and more than one mirror sphere
+                            // with the eye outside), unless a word of one event is asked for
 };
 
 /// kComplete: every part of the exact surfaces is searched or excluded. kFacets: images through the facets

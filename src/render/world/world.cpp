@@ -10,6 +10,7 @@
 #include "render/world/volume_geometry.h"
 #include "scene/data/alpha_cut.h"
 #include "scene/data/scene_digest.h"
+#include "shade/material_maps.h"
 #include "shade/optic_weights.h"
 #include "surfaces/memory_budget.h"
 #include "surfaces/normal_override.h"
@@ -120,8 +121,7 @@ NormalField normal_field(const NormalOverride& from) {
 MapNormals normals_of_map(const Material& material) {
     return [picture = material.normal_texture.picture, sampler = material.normal_texture.sampler,
             scale = material.normal_scale](const Vec2& uv) {
-        const Vec3 texel = lookup(*picture, sampler, sampler.place(uv));
-        return normalize_or_zero(Vec3(scale * (2 * texel.x - 1), scale * (2 * texel.y - 1), 2 * texel.z - 1));
+        return normal_of_texel(lookup(*picture, sampler, sampler.place(uv)), scale);
     };
 }
 

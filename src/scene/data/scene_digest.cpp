@@ -188,8 +188,9 @@ void add(const Light& light, Digest& digest) {
 }
 
 void add(const Primitive& primitive, Digest& digest) {
-    auto [center, axis, tangent, kind] = primitive;
+    auto [center, axis, tangent, kind, is_mirrored] = primitive;
     digest.add_all(center, axis, tangent, kind.index());
+    if (is_mirrored) digest.add(is_mirrored);  // keys of older sweeps stay
     const auto add_length = [&](double length, const char*) { digest.add(length); };
     std::visit([&](auto& one) { for_each_length(one, add_length); }, kind);
     if (const auto* lens = std::get_if<LensPrimitive>(&kind)) {

@@ -218,6 +218,7 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
     }
     std::visit([&](auto& one) { for_each_length(one, scale); }, *kind);
     primitive.kind = *kind;
+    primitive.is_mirrored = glm::determinant(transform.linear) < 0;
     if (!(extent <= kLargestCoordinate))
         mesh.fail("its transform carries the primitive beyond coordinates of 1e30");
     return primitive;
