@@ -167,6 +167,13 @@ inline bool faces_front(const SurfaceGrid& grid, const IdTriple& facet, const Ve
     return dot(cross(b - a, c - a), direction) <= 0;
 }
 
+/// Whether a point lies before the tangent plane of any corner of the grid: never inside of a convex body.
+inline bool lies_before(const SurfaceGrid& grid, const Vec3& point) {
+    for (std::size_t i = 0; i < grid.corner_point.size(); ++i)
+        if (dot(point - grid.points[grid.corner_point[i]], grid.corner_normal[i]) > 0) return true;
+    return false;
+}
+
 /// Of a grid that bounds a body, 1 where its facets' fronts are outside of it and -1 where they are inside; 0
 /// where it bounds none: an edge is not two facets' one way each.
 int body_orientation(const SurfaceGrid& grid);

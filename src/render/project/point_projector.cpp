@@ -65,23 +65,13 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
     for (std::size_t i = 0; i < frame_.optics.size(); ++i) add_optic(i);
 }
 
-/// Whether an eye sees the front of the first optic, which is convex, and so no back of it: it stands
-/// outside.
-bool PointProjector::sees_front() const {
-    const std::optional<Vec3> eye = eye_of(camera_);
-    if (!eye) return false;
-    // From inside, it lies behind the tangent planes of all points.
-    const SurfaceGrid& grid = frame_.optics[0].facets->grid();
-    for (std::size_t i = 0; i < grid.corner_point.size(); ++i)
-        if (dot(*eye - grid.points[grid.corner_point[i]], grid.corner_normal[i]) > 0) return true;
-    return false;
-}
-
 /// Whether light may come over several optics at all: not over one that no ray that leaves it meets again.
 bool PointProjector::may_have_several() const {
     if (request_.path.asks() ? request_.path.size() <= 1 : world_.scene.render.max_depth == 0) return false;
     const std::vector<PathOptic>& optics = path_world(world_).optics;
-    return !optics.empty() && !(optics.size() == 1 && optics[0].mirror && optics[0].convex && sees_front());
+    if (optics.size() != 1 || !optics[0].mirror || !optics[0].convex) return !optics.empty();
+    const std::optional<Vec3> eye = eye_of(camera_);
+    return !eye || !lies_before(frame_.optics[0].facets->grid(), *eye);
 }
 
 /// Rays that tell what of an optic lies behind itself, where images there are left out.

@@ -46,7 +46,6 @@ class PointProjector {
     Vec3 within_reach(const ProjectedPoint& point) const;
     std::optional<ChainImage> moved_image(const WorldImage& image, const ProjectedPoint& point) const;
     void move_to(const ProjectedPoint& point, PointProjection& result) const;
-    bool sees_front() const;
     bool may_have_several() const;
     void keep_strongest(PointProjection& result) const;
     std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points,
