@@ -50,15 +50,15 @@ PlaneCrossing cross_plane(const TetMesh& mesh, const Tetrahedron& cell, std::siz
     return {dot(normal, a - ray.origin), dot(normal, ray.direction), length(normal) * length(ray.direction)};
 }
 
-/// Where the ray leaves a cell that it came into at `entry`: the nearest plane behind.
+/// Where the ray leaves a cell that it came into at `entry`: the nearest plane that it goes out by. No
+/// farther than the entry where it only touches the cell there, at an edge or a corner.
 double exit_behind(const TetMesh& mesh, Id cell, const Ray& ray, double entry) {
     double exit = kNever;
     for (std::size_t k = 0; k < 4; ++k) {
         const PlaneCrossing at = cross_plane(mesh, mesh.cells[cell], k, ray);
-        if (at.is_crossed() && at.speed > 0 && at.ahead / at.speed > entry)
-            exit = std::min(exit, at.ahead / at.speed);
+        if (at.is_crossed() && at.speed > 0) exit = std::min(exit, at.ahead / at.speed);
     }
-    return exit;
+    return std::max(exit, entry);
 }
 
 /// Where it came into a cell that holds its start: the farthest plane before, or the start.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -249,4 +250,23 @@ TEST_CASE("sweep: folders of one axis, as they were once written, are read", "[s
     CHECK(summary.count(RunState::kDone) == 2);
     CHECK(find_fit(summary.fits, "reflect", "left", "disp_mean_px")->order.value() ==
           Approx(2).epsilon(1e-3));
+}
+
+TEST_CASE("sweep: no table has two columns of one name, also where the optic is swept", "[sweep]") {
+    FakeSweep fake(trilens_test::scratch_dir("sweep_optics"), {1, 2});
+    fake.params.axes.axes.push_back(
+        make_axis({"optic", "", "optic", ValueKind::kText}, {"optic", {"left", "right"}}, "axis"));
+    fake.run();
+    for (const char* table : {"runs.csv", "displacement.csv"}) {
+        const std::string text = read_whole_file(fake.params.folder + "/" + table).value();
+        std::vector<std::string> columns;
+        std::istringstream header(text.substr(0, text.find('\n')));
+        for (std::string one; std::getline(header, one, ',');) columns.push_back(one);
+        std::sort(columns.begin(), columns.end());
+        CAPTURE(table);
+        CHECK(std::adjacent_find(columns.begin(), columns.end()) == columns.end());
+    }
+    const std::string displaced = read_whole_file(fake.params.folder + "/displacement.csv").value();
+    CHECK(displaced.find("id,n,swept_optic,layer,optic,") == 0);
+    CHECK(std::count(displaced.begin(), displaced.end(), '\n') == 1 + 2 * 2 * 3);
 }

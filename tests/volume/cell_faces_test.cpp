@@ -86,6 +86,34 @@ TEST_CASE("cells from crossed faces are the cells that clipping finds", "[volume
     CHECK(inside == 1000);
 }
 
+TEST_CASE("a ray that starts on a corner, an edge or a face of cells passes those that hold it",
+          "[volume][law]") {
+    Draw draw(23);
+    for (const double shake : {0.0, 0.3}) {
+        const TetMesh mesh = shaken_grid(shake, draw);
+        std::size_t crowded = 0;
+        const CellFaces faces = find_faces(mesh, crowded);
+        const CrossedCells crossed(mesh, faces);
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < 600; ++i) {
+            const IdTriple& corner = faces.triangles.triangles[static_cast<std::size_t>(
+                draw.uniform(0, 1) * static_cast<double>(faces.triangles.triangles.size()))];
+            Vec3 weights(1, 0, 0);  // at a corner
+            if (i % 3 == 1) weights = Vec3(0.5, 0.5, 0);
+            if (i % 3 == 2) weights = Vec3(0.25, 0.5, 0.25);
+            Ray ray{Vec3(0), draw.unit()};
+            for (int k = 0; k < 3; ++k)
+                ray.origin += weights[k] * mesh.points[corner[static_cast<std::size_t>(k)]];
+            double expected = 0, found = 0;
+            for (const CellStretch& one : clipped(mesh, ray, kFar)) expected += one.t_out - one.t_in;
+            for (const CellStretch& one : crossed.find(ray, kFar, crossings(mesh, faces, ray, kFar)))
+                found += one.t_out - one.t_in;
+            CAPTURE(shake, i, ray.origin.x, ray.origin.y, ray.origin.z);
+            CHECK(found == Approx(expected).epsilon(1e-9).margin(1e-9));
+        }
+    }
+}
+
 TEST_CASE("a gradient gives back the scalars of its cell", "[volume][law]") {
     Draw draw(22);
     const TetMesh mesh = shaken_grid(0.3, draw);

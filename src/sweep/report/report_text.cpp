@@ -196,7 +196,8 @@ std::string summary_latex(const SweepSummary& summary) {
     const std::string metric = has_displacement ? "disp_mean_px" : "rgb_rmse";
     std::vector<std::string> header;
     if (!summary.fits.empty())
-        for (const Coordinate& one : summary.fits[0].group) header.push_back(latex_text(one.axis));
+        for (const Coordinate& one : summary.fits[0].group)
+            header.push_back(latex_text(swept_column(one.axis)));
     const std::string words(header.size() + 2, 'l');
     header.insert(header.end(),
                   {"layer", "optic", "order", "95\\,\\%", "constant", "$n$ for 1\\,px", "measured"});

@@ -128,10 +128,14 @@ std::string runs_csv(const SweepSummary& summary) {
     return text_of_rows(rows);
 }
 
+std::string swept_column(const std::string& axis) {
+    return axis == "optic" ? "swept_optic" : axis;
+}
+
 std::string displacement_csv(const SweepSummary& summary) {
     std::vector<std::string> header = {"id", "n", "layer", "optic"};
     for (const Axis& axis : summary.manifest.axes.axes)
-        if (axis.kind.name != "resolution") header.insert(header.end() - 2, axis.kind.name);
+        if (axis.kind.name != "resolution") header.insert(header.end() - 2, swept_column(axis.kind.name));
     header.insert(header.end(), kDisplacementColumns.begin(), kDisplacementColumns.end());
     std::vector<std::vector<std::string>> rows = {header};
     for (const RunRecord& run : summary.runs)

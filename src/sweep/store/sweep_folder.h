@@ -206,5 +206,8 @@ std::string runs_csv(const SweepSummary& summary);
 
 /// One row per finished run, layer and optic ("all" included) with its displacement.
 std::string displacement_csv(const SweepSummary& summary);
+/// The heading of an axis's values in tables that have a column for optics by themselves: "swept_optic" of
+/// the axis "optic".
+std::string swept_column(const std::string& axis);
 
 }  // namespace trilens
