@@ -127,3 +127,19 @@ TEST_CASE("a fit that agrees with few pairs says so", "[inverse]") {
     CHECK(std::any_of(found.warnings.begin(), found.warnings.end(),
                       [&](const std::string& warning) { return warning.find(says) == 0; }));
 }
+
+TEST_CASE("a pair near a fold, which fixes a number alone, is named; few pairs, or even ones, are not",
+          "[inverse][fit]") {
+    trilens_test::Draw draw(17);
+    const auto warned = [&](std::size_t count, double fold) {
+        DenseMatrix jacobian(2 * count, 3);
+        for (double& value : jacobian.values) value = draw.uniform(-1, 1);
+        for (const std::size_t i : {0, 1, 2}) jacobian(8, i) *= fold;
+        return leverage_warnings(jacobian, uncertainty_of(jacobian), std::vector<FitPair>(count));
+    };
+    CHECK(warned(20, 1).empty());
+    CHECK(warned(6, 1000).empty());
+    const std::vector<std::string> warnings = warned(20, 1000);
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].find("pair 5 alone fixes") == 0);
+}

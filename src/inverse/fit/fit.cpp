@@ -370,10 +370,14 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     for (const FitParameter& parameter : parameters)
         result.parameters.push_back({parameter.name, parameter_value(document, parameter, document),
                                      parameter_value(problem.document(), parameter, document), 0});
-    tell_uncertainty(problem, uncertainty_of(reweighted(problem.least_squares(), last).jacobian), result);
+    const DenseMatrix weighted = reweighted(problem.least_squares(), last).jacobian;
+    const Uncertainty unsure = uncertainty_of(weighted);
+    tell_uncertainty(problem, unsure, result);
     tell_pairs(problem, last, request.huber, result);
     result.rms = rms_of(problem.pairs(), last.residuals);
     warn_of_pairs(request.huber, result);
+    for (std::string& warning : leverage_warnings(weighted, unsure, problem.pairs()))
+        result.warnings.push_back(std::move(warning));
     for (std::string& warning : media_warnings(scene, problem, began))
         result.warnings.push_back(std::move(warning));
     tell_changes(problem, result);

@@ -280,4 +280,10 @@ std::vector<Media> media_of_pairs(const FitScene& scene, std::span<const FitPair
 std::vector<std::string> media_warnings(const Scene& scene, const FitProblem& problem,
                                         std::span<const Media> began);
 
+/// What must be said of pairs that alone fix a part of what is free, because their images lie near a fold:
+/// each by its number from 1 on, as the pairs were given. `jacobian`: reweighted, two rows a pair first;
+/// `found`: of it. None where pairs are so few that each fixes something.
+std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Uncertainty& found,
+                                           const std::vector<FitPair>& pairs);
+
 }  // namespace trilens
