@@ -265,6 +265,7 @@ TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens
     with_cage([](Cage& cage) { cage.corner_sharpnesses = {2}; });
     SurfaceGrid grid = make_surface_grid(*make_surface(plain), 1);
     only_errors("faces_front", [&] { faces_front(grid, grid.facets[0], Vec3(kNaN)); });
+    only_errors("lies_before", [&] { lies_before(grid, Vec3(kNaN)); });
 }
 
 TEST_CASE("sweeps and suites refuse requests that are none", "[trilens][bad-input]") {
