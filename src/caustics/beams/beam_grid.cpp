@@ -33,7 +33,7 @@ constexpr double kFinerTruth = 16;
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
 constexpr double kUnevenHalves = 0.25;
 
-/// Light at a base's middle that is so much of the most off that between its ends has a kink there.
+/// Light at a base's middle that differs from that between its ends by this share of the most bends there.
 constexpr double kUnevenLight = 0.02;
 
 /// Whether every history of one that carries so much is one of the other.
@@ -82,9 +82,10 @@ void BeamGrid::trace_new_corners(const Progress& progress) {
         done.add(static_cast<double>(to - from));
     });
     for (std::size_t i = traced_; i < places_.size(); ++i)
-        for (const LightPath& path : paths_[i].paths)
-            brightest_ = std::max(brightest_, strength_of(path.light)),
+        for (const LightPath& path : paths_[i].paths) {
+            brightest_ = std::max(brightest_, strength_of(path.light));
             most_arriving_ = std::max(most_arriving_, strength_of(path.arriving));
+        }
     traced_ = places_.size();
 }
 

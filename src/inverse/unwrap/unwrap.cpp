@@ -194,9 +194,7 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
     if (photos.empty()) throw UsageError("there is no photograph to unwrap");
     check_target_request(world, request);
     if (request.rank < 1) throw UsageError("images are counted from 1, the best");
-    for (const UnwrapPhoto& photo : photos) {
-        check_photo(world, photo);
-    }
+    for (const UnwrapPhoto& photo : photos) check_photo(world, photo);
     const Target target(request.target, world.scene);
     const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));
 
