@@ -17,10 +17,10 @@ EventWord::EventWord(std::string_view letters) : letters_(letters) {
     if (letters.empty() || letters.size() > kMost)
         throw UsageError(fmt::format("a path has 1..{} events, not {}", kMost, letters.size()));
     if (!is_direct() && letters.find_first_not_of("RT?") != std::string_view::npos)
-        throw UsageError(
-            fmt::format("the path \"{}\" holds a letter other than R (reflected), T (transmitted) and "
-                        "? (either), and is not D (seen directly)",
-                        letters));
+        throw UsageError(fmt::format(
+            "the path \"{}\" holds a letter other than R (reflected), T (transmitted) and "
+            "? (either), and is not D (seen directly); P, where glass has no interface, is left out",
+            letters));
 }
 
 bool EventWord::allows(std::size_t place, Event event) const {
