@@ -173,15 +173,20 @@ TEST_CASE("a normal map's mean is that of the normals between its texels, too, w
     auto raw = std::make_shared<Texture>();
     raw->width = raw->height = 32;
     for (int i = 0; i < 32 * 32; ++i) {
-        const Vec3 normal = normalize(Vec3(draw.uniform(-1, 1), draw.uniform(-1, 1), 1));
+        Vec3 normal(0, 0, 1);  // one draw after the other: compilers order arguments each in their way
+        for (int k = 0; k < 2; ++k) normal[k] = draw.uniform(-1, 1);
+        normal = normalize(normal);
         for (int k = 0; k < 3; ++k) raw->rgb.push_back(static_cast<float>(0.5 + 0.5 * normal[k]));
     }
     const TextureSampler wrap{};
     const auto at = [&](const Vec2& place) { return normal_of_texel(lookup(*raw, wrap, place), 1); };
     const MipMap means(normals_of(*raw, 1));
-    double shortest = 1;
-    for (int trial = 0; trial < 200; ++trial) {
-        const Vec2 place(draw.uniform(0, 1), draw.uniform(0, 1));
+    double shortest = 1, square = 0, longer = 0;
+    constexpr int kCount = 200;
+    for (int trial = 0; trial < kCount; ++trial) {
+        Vec2 place;
+        place.x = draw.uniform(0, 1);
+        place.y = draw.uniform(0, 1);
         const double texels = trial < 20 ? 0 : draw.log_uniform(0.01, 24), side = texels / 32;
         Vec3 brute(0);
         constexpr int kPlaces = 60;
@@ -192,10 +197,18 @@ TEST_CASE("a normal map's mean is that of the normals between its texels, too, w
         const Vec3 mean = lookup(means, wrap, {place, {Vec2(side, 0), Vec2(0, side)}}, at);
         CAPTURE(texels, length(brute), length(mean));
         if (texels < 0.05) CHECK(length(mean) == Approx(1).margin(1e-3));
-        CHECK(length(mean - brute) < (texels < 8 ? 0.02 : 0.08));
+        // Wider ones are looked up in the means, as other pictures are.
+        if (texels < 8) CHECK(length(mean - brute) < 0.02);
+        square += dot(mean - brute, mean - brute) / kCount;
+        longer += (length(mean) - length(brute)) / kCount;
         shortest = std::min(shortest, length(mean));
     }
     CHECK(shortest < 0.9);
+    // Of all, and in the mean, as near as look-ups of other pictures must be, whose values deviate by 0.5; of
+    // normals it is 0.7.
+    INFO("rms " << std::sqrt(square) << ", bias " << longer);
+    CHECK(std::sqrt(square) < 0.012);
+    CHECK(std::fabs(longer) < 0.003);
 }
 
 TEST_CASE("pictures repeat, are mirrored, or end in their edges, as the sampler says", "[shade][textures]") {
