@@ -35,8 +35,8 @@ Vec4 color_at(const ShadeScene& scene, const Hit& hit) {
     return glm::clamp(mean, Vec4(0), Vec4(1));
 }
 
-/// How uv at the hit change along the sides of the ray's footprint.
-Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen, const TextureSampler& sampler) {
+/// How the picture's place at the hit changes along the sides of the ray's footprint.
+Footprint footprint_on(const ShadeScene& scene, const SeenAlong& seen, const TextureSampler& sampler) {
     const std::array<Vec2, 3>* of_corners = uvs_of(scene, seen.hit->triangle, sampler);
     if (!of_corners) return {Vec2(0), Vec2(0)};
     const std::array<Vec2, 3>& uv = *of_corners;
@@ -50,15 +50,9 @@ Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen, const Tex
         // The ray's point moves with origin and direction, and along the ray until it is in the plane again.
         Vec3 step = seen.differential->origin[k] + seen.hit->t * seen.differential->direction[k];
         step -= dot(normal, step) / along * seen.ray->direction;
-        footprint[k] = dot(cross(step, c), normal) / area * (uv[1] - uv[0]) +
-                       dot(cross(b, step), normal) / area * (uv[2] - uv[0]);
+        footprint[k] = sampler.step(dot(cross(step, c), normal) / area * (uv[1] - uv[0]) +
+                                    dot(cross(b, step), normal) / area * (uv[2] - uv[0]));
     }
-    return footprint;
-}
-
-Footprint stepped_footprint(const ShadeScene& scene, const SeenAlong& seen, const TextureSampler& sampler) {
-    Footprint footprint = uv_footprint(scene, seen, sampler);
-    for (Vec2& side : footprint) side = sampler.step(side);
     return footprint;
 }
 
@@ -77,7 +71,7 @@ Vec3 look_up(const ShadeScene& scene, const SeenAlong& seen, const MipMap* mips,
     const TextureSampler& sampler = texture.sampler;
     const Vec2 place = sampler.place(uv_at(scene, *seen.hit, sampler));
     if (!mips) return lookup(texture.picture, sampler, place);
-    return lookup(*mips, sampler, place, stepped_footprint(scene, seen, sampler));
+    return lookup(*mips, sampler, place, footprint_on(scene, seen, sampler));
 }
 
 /// A normal map there: its own normal and how long the mean of those in the footprint is.
@@ -91,7 +85,7 @@ void look_up_normal(const ShadeScene& scene, const SeenAlong& seen, const MipMap
     const Vec2 place = sampler.place(uv_at(scene, *seen.hit, sampler));
     Vec3 mean;
     if (mips) {
-        mean = lookup(*mips, sampler, {place, stepped_footprint(scene, seen, sampler)}, normal_at);
+        mean = lookup(*mips, sampler, {place, footprint_on(scene, seen, sampler)}, normal_at);
         texels.normal_length = std::min(length(mean), 1.0);
     } else {
         mean = normal_at(place);

@@ -17,7 +17,6 @@ constexpr double kPlacesPerTexel = 4;   // along a side, while it is short; then
 constexpr double kMorePlaces = 6;       // than one per texel, at most
 constexpr int kMostWindow = 256;        // texels that are weighed
 constexpr int kMostSlanted = 2;  // how many times as many places its parallelogram may take as its rectangle
-constexpr double kMostTexels = 1e9;  // longer sides than this are as good as infinite
 
 /// What part a coarser texel has of each finer one along an axis: at most three, for sides that are odd.
 struct Taps {
@@ -197,7 +196,7 @@ Look look_at(const MipMap& map, const Footprint& footprint) {
     const double longer = length(turned[0]), shorter = length(turned[1]);
     if (longer <= kPointTexels) return {};
     // Also where a side is no number: the mean of the whole picture.
-    if (!(longer < kMostTexels && shorter <= longer)) return {map.level_count() - 1};
+    if (!(std::isfinite(longer) && shorter <= longer)) return {map.level_count() - 1};
 
     // The finest level at which the footprint is less than twice as wide as it must be.
     std::size_t level = 0;

@@ -208,11 +208,9 @@ bool BeamGrid::is_mixed(const Triangle& triangle, double least) const {
 /// Whether what comes to the first optic turns along its base: at the edges of a spot's cone, where light is
 /// no straight line, and no quadratic either.
 bool BeamGrid::is_unevenly_lit(const Triangle& triangle) const {
-    const auto arriving = [&](Id corner) {
-        return paths(corner).empty() ? Vec3(0) : paths(corner).front().arriving;
-    };
     const Id a = triangle.corner[0], b = triangle.corner[1], middle = middles_.at(edge_of(a, b));
     if (paths(a).empty() || paths(b).empty() || paths(middle).empty()) return false;  // a border's
+    const auto arriving = [&](Id corner) { return paths(corner).front().arriving; };
     const Vec3 bend = 0.5 * (arriving(a) + arriving(b)) - arriving(middle);
     return strength_of(glm::abs(bend)) > kUnevenLight * most_arriving_;
 }

@@ -2,7 +2,7 @@
 // ANOVA, 1978).
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
 #include <vector>
 
 #include "base/util/format.h"
@@ -18,11 +18,9 @@ constexpr double kNearFold = 30;
 /// Where each pair must tell of more than this part of an unknown, high leverage is how things are.
 constexpr double kFewPairs = 0.25;
 
-double row_product(const DenseMatrix& jacobian, std::size_t row, const DenseMatrix& covariance) {
+double leverage_of(std::span<const double> row, const DenseMatrix& covariance) {
     double sum = 0;
-    for (std::size_t i = 0; i < jacobian.columns; ++i)
-        for (std::size_t j = 0; j < jacobian.columns; ++j)
-            sum += jacobian(row, i) * covariance(i, j) * jacobian(row, j);
+    for (std::size_t i = 0; i < row.size(); ++i) sum += row[i] * dot_product(covariance.row(i), row);
     return sum;
 }
 
@@ -34,9 +32,8 @@ std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Un
     std::vector<double> used;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (pairs[p].is_lost) continue;
-        for (const std::size_t row : {2 * p, 2 * p + 1})
-            for (std::size_t i = 0; i < jacobian.columns; ++i)
-                lengths[p] = std::hypot(lengths[p], jacobian(row, i));
+        const std::span<const double> x = jacobian.row(2 * p), y = jacobian.row(2 * p + 1);
+        lengths[p] = std::sqrt(dot_product(x, x) + dot_product(y, y));
         used.push_back(lengths[p]);
     }
     std::vector<std::string> warnings;
@@ -45,10 +42,10 @@ std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Un
     std::nth_element(used.begin(), used.begin() + static_cast<std::ptrdiff_t>(used.size() / 2), used.end());
     const double median = used[used.size() / 2];
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const double leverage = pairs[p].is_lost ? 0
-                                                 : row_product(jacobian, 2 * p, found.covariance) +
-                                                       row_product(jacobian, 2 * p + 1, found.covariance);
-        if (leverage < kAllOfOne || !(lengths[p] > kNearFold * median)) continue;
+        if (!(lengths[p] > kNearFold * median)) continue;  // lost ones have none
+        const double leverage = leverage_of(jacobian.row(2 * p), found.covariance) +
+                                leverage_of(jacobian.row(2 * p + 1), found.covariance);
+        if (leverage < kAllOfOne) continue;
         warnings.push_back(fmt::format(
             "pair {} alone fixes a part of what is free (leverage {:.2f}): its image lies near a fold, where "
             "it moves {:.0f} times as far as the median pair's, so that the fit may rest there, far from where "
