@@ -116,7 +116,10 @@ Answer run(const CalibrationOptions& options, Console& console) {
         answer.code = ExitCode::kComputation;
         return answer;
     }
-    if (!result.converged) console.warn("the fit has not come to rest after all its iterations");
+    if (!result.converged)
+        console.warn(
+            "the fit has not come to rest: it took all its iterations, or no step finds what its derivatives "
+            "promise");
     write_output(options.output, document_for(options.output, scene, result), console);
     answer.fields["output"] = options.output;
     return answer;

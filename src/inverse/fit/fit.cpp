@@ -10,7 +10,6 @@
 #include "base/util/names.h"
 #include "inverse/fit/fit_problem.h"
 #include "inverse/solve/least_squares.h"
-#include "render/project/project.h"
 #include "render/world/world.h"
 #include "scene/read/override.h"
 
@@ -70,81 +69,6 @@ double extent_of(const Scene& scene, std::span<const FitPair> pairs) {
     }
     const double extent = box.empty() ? 0 : length(box.high - box.low);
     return extent > 0 ? extent / 2 : 1;
-}
-
-std::string word_of(const WorldImage& image) {
-    if (image.path == Path::kDirect) return "D";
-    std::string word;
-    for (const Step& step : image.steps)
-        if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
-    return word;
-}
-
-/// Whether an image's events are those that a word asks for.
-bool fits(const std::string& word, const std::string& asked) {
-    if (asked.empty()) return word != "D";
-    if (word.size() != asked.size()) return false;
-    return std::equal(word.begin(), word.end(), asked.begin(),
-                      [](char is, char wanted) { return is == wanted || (wanted == '?' && is != 'D'); });
-}
-
-/// Whether the ray at an image's pixel goes over the optics that the image is over: of images over one optic
-/// others may lie between.
-bool is_followed(const World& world, const FitScene& scene, const FitPair& pair, const WorldImage& image) {
-    const std::string word = word_of(image);
-    if (word.empty()) return false;
-    const std::optional<ShotPath> path = shoot_path(scene, pair.camera, image.pixel, word);
-    if (!path) return false;
-    std::size_t k = 0;
-    for (const Step& step : image.steps)
-        if (step.event != Event::kPass &&
-            (k >= path->events.size() ||
-             scene.optics[path->events[k++].optic].mesh != world.optics[step.optic].mesh))
-            return false;
-    return true;
-}
-
-/// Of the images that a pair may be, the nearest that is followed; where none is, the nearest.
-const WorldImage* nearest_image(const World& world, const FitScene& scene, const FitPair& pair,
-                                const std::vector<WorldImage>& images) {
-    const WorldImage* best = nullptr;
-    std::pair<bool, double> least;
-    for (const WorldImage& image : images) {
-        if (!fits(word_of(image), pair.word)) continue;
-        const std::pair off(!is_followed(world, scene, pair, image), length(image.pixel - pair.pixel));
-        if (!best || off < least) best = &image, least = off;
-    }
-    return best;
-}
-
-/// Starts each pair at an image of its point in the scene as it is.
-void match_images(const World& world, std::span<const Correspondence> given, FitMatch match,
-                  FitProblem& problem) {
-    std::vector<FitPair>& pairs = problem.pairs();
-    for (std::size_t c = 0; c < world.scene.cameras.size(); ++c) {
-        std::vector<Vec3> points;
-        std::vector<std::size_t> of_pair;
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            if (pairs[i].camera == c) points.push_back(pairs[i].point), of_pair.push_back(i);
-        if (points.empty()) continue;
-        ProjectRequest request;
-        request.frame.camera = c;
-        const std::vector<PointProjection> found = project_points(world, request, points);
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            FitPair& pair = pairs[of_pair[k]];
-            const auto wanted = static_cast<std::size_t>(given[of_pair[k]].image);
-            const std::vector<WorldImage>& images = found[k].images;
-            const WorldImage* best = match != FitMatch::kId
-                                         ? nearest_image(world, problem.scene(), pair, images)
-                                     : wanted < images.size() ? &images[wanted]
-                                                              : nullptr;
-            pair.is_lost = !best;
-            if (!best) continue;
-            pair.guess = best->pixel;
-            pair.word = word_of(*best);
-            pair.events = pair.word == "D" ? 0 : pair.word.size();
-        }
-    }
 }
 
 std::vector<FitProblem::Prior> find_priors(const FitRequest& request, Json& document,
@@ -307,8 +231,25 @@ void tell_changes(const FitProblem& problem, FitResult& result) {
     }
 }
 
-bool all_lost(std::vector<FitPair>& pairs) {
-    return std::all_of(pairs.begin(), pairs.end(), [](const FitPair& pair) { return pair.is_lost; });
+std::size_t lost_of(const std::vector<FitPair>& pairs) {
+    return static_cast<std::size_t>(
+        std::count_if(pairs.begin(), pairs.end(), [](const FitPair& pair) { return pair.is_lost; }));
+}
+
+bool all_lost(const std::vector<FitPair>& pairs) {
+    return lost_of(pairs) == pairs.size();
+}
+
+/// What a lost pair counts for where exact images begin: less near the answer, for a pixel that noise moved
+/// beyond the edge of what can be seen is to be lost there, and must not hold all others where it is not.
+double lost_sigmas(const Linearisation& at, std::size_t pairs) {
+    constexpr double kLeast = 12, kMost = 40, kOfMedian = 6;
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < pairs; ++i)
+        lengths.push_back(std::hypot(at.residuals[2 * i], at.residuals[2 * i + 1]));
+    std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(pairs / 2),
+                     lengths.end());
+    return std::clamp(kOfMedian * lengths[pairs / 2], kLeast, kMost);
 }
 
 }  // namespace
@@ -340,26 +281,30 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
     FitResult result;
     LeastSquaresParams params;
     params.most_iterations = request.most_iterations;
+    params.negligible_fall = 1e-6;  // squared standard deviations
+    if (request.match != FitMatch::kRay) {
+        match_images(*make_world(scene, {}), given, request.match, problem);
+        problem.residual = FitResidual::kImage;
+        result.rms_start = rms_of(problem.pairs(), problem.linearise().residuals);
+        problem.residual = FitResidual::kRay;
+    }
+    const Linearisation first = problem.linearise();
     if (request.match == FitMatch::kRay) {
-        const Linearisation first = problem.linearise();
         if (all_lost(problem.pairs()))
             throw ComputationError(
                 "every pair is lost: no ray through a pixel meets the optics as its path says");
         result.rms_start = rms_of(problem.pairs(), first.residuals);
+    }
+    if (request.match == FitMatch::kRay || 2 * lost_of(problem.pairs()) < given.size()) {
         // The metric moves with the parameters: what is left is for the exact images.
         LeastSquaresParams rough = params;
         rough.step_tolerance = 1e-7, rough.cost_tolerance = 1e-3;
         result.iterations += minimise(problem.least_squares(), rough).iterations;
         problem.linearise();  // guesses and events of the end
-    } else {
-        match_images(*make_world(scene, {}), given, request.match, problem);
     }
 
     problem.residual = FitResidual::kImage;
-    if (request.match != FitMatch::kRay) {
-        const Linearisation first = problem.linearise();
-        result.rms_start = rms_of(problem.pairs(), first.residuals);
-    }
+    problem.lost_sigmas = lost_sigmas(problem.linearise(), given.size());
     const LeastSquaresReport report = minimise(problem.least_squares(), params);
     result.iterations += report.iterations;
     result.converged = report.converged;

@@ -33,8 +33,8 @@ std::vector<Correspondence> read_correspondences(const std::string& file);
 std::vector<Correspondence> parse_correspondences(const std::string& text, const std::string& name);
 
 /// How a pair's pixel is told from the other images of its point. kRay: the ray through the pixel is
-/// followed, and asks for no image. kNearest: the image of the point, in the scene where the fit begins, that
-/// lies nearest to the pixel. kId: the one that the pair names.
+/// followed, and asks for no image. kNearest: over the optics of that image of the point which, in the scene
+/// where the fit begins, lies nearest to the pixel. kId: of the one that the pair names.
 enum class FitMatch { kRay, kNearest, kId };
 
 /// A free number that is held near a value: its own residual (number - value) / sigma.
@@ -76,7 +76,8 @@ constexpr const char* pair_state_name(PairState state) {
 /// the optics that its ray meets. Outlier: it lies beyond FitRequest::huber.
 struct FittedPair {
     PairState state = PairState::kUsed;
-    Vec2 residual{0};  // pixels: image of the point minus pixel; NaN where lost
+    Vec2 residual{
+        0};  // pixels: image of the point minus pixel, near a fold as far as it is told; NaN where lost
     std::string path;  // its events, as FitRequest::path has them
 };
 
@@ -103,10 +104,11 @@ struct FitResult {
 };
 
 /// The parameters for which the images of all points lie nearest to their pixels, by Levenberg and Marquardt
-/// with Huber's loss: first along the pixels' rays, then by the exact images. Objects hide nothing, and glass
-/// has its `ior` for every colour. What cameras stand in is asked anew at each step, as pictures have it; the
-/// exact images of the second part keep theirs, or are lost, and a camera that ends in other glass than it
-/// began in is warned of. The same result for any number of threads.
+/// with Huber's loss: first along the pixels' rays, then by the exact images; near folds along the rays to
+/// the end, with the noise of a pixel there to second order. Objects hide nothing, and glass has its `ior`
+/// for every colour. What cameras stand in is asked anew at each step, as pictures have it; the exact images
+/// of the second part keep theirs, or are lost, and a camera that ends in other glass than it began in is
+/// warned of. The same result for any number of threads.
 ///
 /// Throws InputError for pointers that name no number, a scene without JSON (Scene::resolved), pairs that are
 /// too few or not finite, cameras whose rays have no common eye and are not parallel; UsageError for cameras

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -13,12 +14,20 @@
 namespace trilens {
 namespace {
 
-/// The residual of a lost pair, in sigmas: constant, so that it pulls nowhere, and no reward for losing it.
-constexpr double kLostResidual = 40;
 /// Of a large step of a parameter: for central differences. Places and tangents are linear in most
 /// parameters; in the others what is left out is below 1e-9 of the derivative.
 constexpr double kDifference = 1e-5;
 constexpr std::size_t kPairsPerThread = 8;
+constexpr double kLeastBend = 0.02;  // sigmas
+/// Images near folds move so many times as far as the median image, for the same angle of their last rays.
+constexpr double kFoldRate = 5;
+constexpr double kFoldVariance = 1.25;  // of FoldWhitening: beyond is near a fold
+
+/// How much of what changes in spreads is taken over: all, then less and less.
+double settling_gain(int linearised) {
+    constexpr int kAll = 10;
+    return std::ldexp(1, std::min(0, kAll - linearised));
+}
 
 constexpr int kMostImageSteps = 40;
 constexpr double kImageStep = 1e-7;       // pixels: Newton's last step, whose own error is its square
@@ -26,6 +35,18 @@ constexpr double kLongestImageStep = 50;  // pixels
 
 Vec2 seen_offset(const std::array<Vec3, 2>& metric, const Vec3& offset) {
     return {dot(metric[0], offset), dot(metric[1], offset)};
+}
+
+/// The median of how fast images move, as far as it is known; else infinite.
+double usual_rate_of(const std::vector<FitPair>& pairs) {
+    std::vector<double> rates;
+    for (const FitPair& pair : pairs)
+        if (const double rate = fastest_motion(pair.metric).rate * pair.distance; rate > 0)
+            rates.push_back(rate);
+    if (rates.empty()) return std::numeric_limits<double>::infinity();
+    const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
+    std::nth_element(rates.begin(), middle, rates.end());
+    return *middle;
 }
 
 /// Whether a pair's path is known, if only how many events it has.
@@ -150,44 +171,134 @@ void FitProblem::take_path(FitPair& pair) const {
     pair.path = std::move(path->events);
 }
 
+/// Where the ray of a place on the film, over the pair's path, passes nearest to its point.
+std::optional<Vec3> FitProblem::passes(const FitPair& pair, const Vec2& pixel) const {
+    std::optional<ShotPath> path = shoot(scene_, pair, pixel);
+    if (!path || !keeps_path(*path, pair)) return std::nullopt;
+    cut_path(*path, pair.events);
+    return nearest_on_last(*path, pair.point);
+}
+
+/// With its metric and distance. In the first part of a fit it holds images to kFoldRate, no more. In the
+/// second it is that of rays at the places of a rule for means over the pixel's noise, if those a sigma away
+/// along which images move most tell of a bend; rays that take another path are left out. It settles: it
+/// changes with the parameters, and they with it.
+FoldWhitening FitProblem::whitening_at(FitPair& pair, const Vec2& pixel) const {
+    const FastestMotion motion = fastest_motion(pair.metric);
+    const double most = std::pow(motion.rate * pair.distance / usual_rate_, 2);
+    if (!(most > kFoldRate * kFoldRate)) return {};
+    if (residual == FitResidual::kRay) return {motion.along, most / (kFoldRate * kFoldRate)};
+
+    const std::optional<Vec3> here = passes(pair, pixel);
+    if (!here) return {};
+    const Vec2 along = motion.along, across(-along.y, along.x);
+    const auto residual_at = [&](double z, double w) -> std::optional<double> {
+        const std::optional<Vec3> there = passes(pair, pixel + pair.sigma * (z * along + w * across));
+        if (!there) return std::nullopt;
+        return dot(along, seen_offset(pair.metric, *there - *here)) / pair.sigma;
+    };
+    bool bends = pair.spread > 0;
+    for (const double side : {-1.0, 1.0})
+        bends |= std::abs(residual_at(side, 0).value_or(side) - side) > kLeastBend;
+    if (!bends) return {};
+    const double unit = std::pow(pair.sigma / motion.rate, 2);
+    const double gain = pair.spread > 0 ? settling_gain(images_linearised_) : 1;
+    pair.spread += gain * (normal_mean_square(residual_at) * unit - pair.spread);
+    // Whatever it is, it leaves the image the weight of the median's.
+    return {along, std::clamp(pair.spread / unit, 1.0, most)};
+}
+
+/// By the ray of its pixel; in the second part of the fit over the path that is known.
+std::optional<PathDerivatives> FitProblem::linearise_ray(
+    FitPair& pair, std::span<const ParameterDifference> parameters) const {
+    std::optional<ShotPath> path = shoot(scene_, pair, pair.pixel);
+    if (!path || (path->events.empty() && pair.word != "D")) return std::nullopt;
+    const bool is_known = residual == FitResidual::kImage;
+    if (is_known && !keeps_path(*path, pair)) return std::nullopt;
+    // A word says how many events there are.
+    cut_path(*path, is_known            ? pair.events
+                    : pair.word.empty() ? events_towards(*path, pair.point)
+                                        : path->events.size());
+    const Vec3 nearest = nearest_on_last(*path, pair.point);
+    std::optional<PathDerivatives> derivatives =
+        path_derivatives(scene_, {pair.camera, pair.pixel}, path->events, nearest, parameters);
+    if (!derivatives) return std::nullopt;
+    pair.guess = pair.pixel;
+    pair.events = path->events.size();
+    pair.path = std::move(path->events);
+    pair.metric = derivatives->by_point;
+    pair.distance = length(nearest - path->last.origin);
+    pair.whitening = whitening_at(pair, pair.pixel);
+    if (is_known) pair.is_near_fold |= pair.whitening.variance > kFoldVariance;
+    pair.off = pair.whitening.of(seen_offset(pair.metric, pair.point - nearest));
+    for (Vec2& moved : derivatives->by_parameter) moved = pair.whitening.of(moved);
+    return derivatives;
+}
+
+/// By the image of its point.
+std::optional<PathDerivatives> FitProblem::linearise_image(
+    FitPair& pair, std::span<const ParameterDifference> parameters) const {
+    std::optional<Image> image = image_of(scene_, pair);
+    if (!image) return std::nullopt;
+    std::optional<PathDerivatives> derivatives =
+        path_derivatives(scene_, {pair.camera, image->pixel}, image->path.events, pair.point, parameters);
+    if (!derivatives) return std::nullopt;
+    pair.guess = image->pixel;
+    pair.path = std::move(image->path.events);
+    pair.metric = derivatives->by_point;
+    pair.distance = length(pair.point - image->path.last.origin);
+    pair.whitening = whitening_at(pair, pair.guess);
+    pair.is_near_fold = pair.whitening.variance > kFoldVariance;
+    if (!pair.is_near_fold) pair.whitening = {}, pair.spread = 0;
+    pair.off = pair.guess - pair.pixel;
+    return derivatives;
+}
+
+/// In the second part a pair whose image lies near a fold, or is gone from there, is measured along its ray
+/// from then on.
+std::optional<PathDerivatives> FitProblem::linearise_either(
+    FitPair& pair, std::span<const ParameterDifference> parameters) const {
+    if (residual == FitResidual::kRay) {
+        pair.is_near_fold = false;
+        pair.spread = 0;
+        return linearise_ray(pair, parameters);
+    }
+    if (pair.is_near_fold) return linearise_ray(pair, parameters);
+    if (finds_paths && !knows_path(pair)) take_path(pair);
+    if (!knows_path(pair)) return std::nullopt;
+    std::optional<PathDerivatives> derivatives = linearise_image(pair, parameters);
+    if (derivatives && !pair.is_near_fold) return derivatives;
+    FitPair by_ray = pair;
+    by_ray.spread = 0;
+    std::optional<PathDerivatives> along = linearise_ray(by_ray, parameters);
+    if (along && by_ray.is_near_fold) {
+        pair = std::move(by_ray);
+        return along;
+    }
+    // Its pixel's ray goes another way: by the image, which weighs less.
+    pair.is_near_fold = false;
+    if (derivatives) {
+        pair.off = pair.whitening.of(pair.off);
+        for (Vec2& moved : derivatives->by_parameter) moved = pair.whitening.of(moved);
+    }
+    return derivatives;
+}
+
 Vec2 FitProblem::linearise_pair(FitPair& pair, std::span<const ParameterDifference> parameters,
                                 DenseMatrix& jacobian, std::size_t row) const {
-    pair.is_lost = true;
-    Vec2 off(kLostResidual * pair.sigma, 0);
-    std::optional<PathDerivatives> derivatives;
-    if (residual == FitResidual::kRay) {
-        std::optional<ShotPath> path = shoot(scene_, pair, pair.pixel);
-        if (!path || (path->events.empty() && pair.word != "D")) return off;
-        cut_path(*path, events_towards(*path, pair.point));
-        const Vec3 nearest = nearest_on_last(*path, pair.point);
-        derivatives = path_derivatives(scene_, {pair.camera, pair.pixel}, path->events, nearest, parameters);
-        if (!derivatives) return off;
-        off = seen_offset(derivatives->by_point, pair.point - nearest);
-        pair.guess = pair.pixel;
-        pair.events = path->events.size();
-        pair.path = std::move(path->events);
-    } else {
-        if (finds_paths && !knows_path(pair)) take_path(pair);
-        std::optional<Image> image = image_of(scene_, pair);
-        if (!image) return off;
-        derivatives =
-            path_derivatives(scene_, {pair.camera, image->pixel}, image->path.events, pair.point, parameters);
-        if (!derivatives) return off;
-        off = image->pixel - pair.pixel;
-        pair.guess = image->pixel;
-        pair.path = std::move(image->path.events);
-    }
-    pair.is_lost = false;
-    pair.metric = derivatives->by_point;
+    const std::optional<PathDerivatives> derivatives = linearise_either(pair, parameters);
+    pair.is_lost = !derivatives;
+    if (!derivatives) return Vec2(lost_residual(pair), 0);
     for (std::size_t p = 0; p < parameters_.size(); ++p)
         for (int axis = 0; axis < 2; ++axis)
             jacobian(row + static_cast<std::size_t>(axis), p) =
                 derivatives->by_parameter[p][axis] * parameters_[p].scale / pair.sigma;
-    return off;
+    return pair.off;
 }
 
 Linearisation FitProblem::linearise() {
     if (progress && progress->cancelled()) throw Interrupted();
+    usual_rate_ = usual_rate_of(pairs_);
     const std::vector<ParameterDifference> parameters = differences();
     Linearisation at{{}, DenseMatrix(2 * pairs_.size() + priors.size(), parameters_.size())};
     at.residuals.resize(2 * pairs_.size());
@@ -197,6 +308,7 @@ Linearisation FitProblem::linearise() {
             at.residuals[2 * i] = off.x, at.residuals[2 * i + 1] = off.y;
         }
     });
+    if (residual == FitResidual::kImage) ++images_linearised_;
     add_priors(document_, at.residuals);
     for (std::size_t k = 0; k < priors.size(); ++k)
         at.jacobian(2 * pairs_.size() + k, priors[k].parameter) =
@@ -204,16 +316,22 @@ Linearisation FitProblem::linearise() {
     return at;
 }
 
+/// Of a step that loses the pair: of exact images, near the answer, no reward for it.
+double FitProblem::lost_residual(const FitPair& pair) const {
+    const double lost = lost_sigmas * pair.sigma;
+    return pair.is_lost || residual == FitResidual::kRay ? lost : std::max(lost, length(pair.off));
+}
+
 std::optional<Vec2> FitProblem::trial_residual(const FitPair& pair, const FitScene& scene) const {
-    if (residual == FitResidual::kImage) {
+    if (residual == FitResidual::kImage && !pair.is_near_fold) {
         const std::optional<Image> image = image_of(scene, pair);
-        return image ? std::optional(image->pixel - pair.pixel) : std::nullopt;
+        return image ? std::optional(pair.whitening.of(image->pixel - pair.pixel)) : std::nullopt;
     }
     if (pair.is_lost) return std::nullopt;  // it has no metric to be measured in
     std::optional<ShotPath> path = shoot(scene, pair, pair.pixel);
     if (!path || path->events.size() < pair.events) return std::nullopt;
     cut_path(*path, pair.events);
-    return seen_offset(pair.metric, pair.point - nearest_on_last(*path, pair.point));
+    return pair.whitening.of(seen_offset(pair.metric, pair.point - nearest_on_last(*path, pair.point)));
 }
 
 std::optional<std::vector<double>> FitProblem::residuals_after(std::span<const double> step) {
@@ -225,7 +343,7 @@ std::optional<std::vector<double>> FitProblem::residuals_after(std::span<const d
         for (std::size_t i = from; i < to; ++i) {
             const double sigma = pairs_[i].sigma;
             const Vec2 off =
-                trial_residual(pairs_[i], scene).value_or(Vec2(kLostResidual * sigma, 0)) / sigma;
+                trial_residual(pairs_[i], scene).value_or(Vec2(lost_residual(pairs_[i]), 0)) / sigma;
             residuals[2 * i] = off.x, residuals[2 * i + 1] = off.y;
         }
     });

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,6 +25,8 @@
 #include "scene/data/scene.h"
 
 namespace trilens {
+
+struct World;
 
 /// The parts of a scene whose numbers a picture's geometry depends on.
 enum class ScenePart { kCamera, kMesh, kMaterial };
@@ -203,7 +208,30 @@ std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const Sho
 
 /// What a pair's residual is: along the ray of its pixel, (dx/dX) (X - Y) with Y the ray's place nearest to
 /// the point X (Sampson's, its metric held until the next linearisation); or by the image of X.
+/// Near a fold, where the least step of a parameter may leave no image, kImage takes the former.
 enum class FitResidual { kRay, kImage };
+
+/// How much less a pixel tells near a fold than the image's slope there says: the residual loses a part along
+/// the direction of the film in which images move most, so that its variance is that of the pixel again.
+struct FoldWhitening {
+    Vec2 along{0};        // unit, or 0
+    double variance = 1;  // of the residual along it, in squared sigmas, at least 1
+
+    double shrink() const { return 1 - 1 / std::sqrt(variance); }
+    Vec2 of(const Vec2& residual) const { return residual - shrink() * dot(along, residual) * along; }
+};
+
+/// The mean of f(z, w)^2 over independent normal z and w, by Gauss's and Hermite's rule of three points each:
+/// exact where f is of second degree. Where f is none it is left out; 0 where it is so everywhere.
+double normal_mean_square(const std::function<std::optional<double>(double, double)>& f);
+
+/// Of an image with slope dx/dX: unit, the direction on the film in which it moves most, and how far, in
+/// pixels per scene unit.
+struct FastestMotion {
+    Vec2 along{0};
+    double rate = 0;
+};
+FastestMotion fastest_motion(const std::array<Vec3, 2>& slope);
 
 /// A pair as the problem holds it.
 struct FitPair {
@@ -217,6 +245,13 @@ struct FitPair {
     std::size_t events = 0;  // of its path; 0 and no "D": none is known yet, the pair is lost
     bool is_lost = false;
     std::array<Vec3, 2> metric{};  // dx/dX at the last linearisation
+    double distance = 0;           // there, of the point from where its last ray begins
+    FoldWhitening whitening = {};  // there
+    Vec2 off = Vec2(0);            // there, the residual, pixels
+    bool is_near_fold = false;     // kImage: measured along its ray
+    /// kImage, near a fold: the variance of the offset from its ray in the direction of the whitening, scene
+    /// units; 0: not asked yet.
+    double spread = 0;
     std::vector<OpticEvent> path = {};  // at the last linearisation where it was not lost; may be empty
 };
 
@@ -237,6 +272,8 @@ class FitProblem {
     /// kImage: a pair without a path takes that of its pixel's ray, as soon as there is one.
     bool finds_paths = true;
     FitResidual residual = FitResidual::kRay;
+    /// The residual of a lost pair, in sigmas: constant, so that it pulls nowhere.
+    double lost_sigmas = 40;
     const Progress* progress = nullptr;
 
     LeastSquares least_squares();
@@ -256,6 +293,15 @@ class FitProblem {
     void take_path(FitPair& pair) const;
     Vec2 linearise_pair(FitPair& pair, std::span<const ParameterDifference> parameters, DenseMatrix& jacobian,
                         std::size_t row) const;
+    std::optional<PathDerivatives> linearise_either(FitPair& pair,
+                                                    std::span<const ParameterDifference> parameters) const;
+    std::optional<PathDerivatives> linearise_ray(FitPair& pair,
+                                                 std::span<const ParameterDifference> parameters) const;
+    std::optional<PathDerivatives> linearise_image(FitPair& pair,
+                                                   std::span<const ParameterDifference> parameters) const;
+    std::optional<Vec3> passes(const FitPair& pair, const Vec2& pixel) const;
+    FoldWhitening whitening_at(FitPair& pair, const Vec2& pixel) const;
+    double lost_residual(const FitPair& pair) const;
     std::optional<Vec2> trial_residual(const FitPair& pair, const FitScene& scene) const;
     std::optional<ShotPath> shoot(const FitScene& scene, const FitPair& pair, const Vec2& pixel) const;
     struct Image {
@@ -270,7 +316,14 @@ class FitProblem {
     std::vector<FitParameter> parameters_;
     std::vector<FitPair> pairs_;
     FitScene scene_;
+    int images_linearised_ = 0;
+    double usual_rate_ =
+        std::numeric_limits<double>::infinity();  // of images, pixels for the angle of a last ray
 };
+
+/// Starts each pair at an image of its point in the world as it is; pairs without one are lost.
+void match_images(const World& world, std::span<const Correspondence> given, FitMatch match,
+                  FitProblem& problem);
 
 /// What each pair's ray starts in.
 std::vector<Media> media_of_pairs(const FitScene& scene, std::span<const FitPair> pairs);

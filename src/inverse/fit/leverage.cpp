@@ -48,9 +48,9 @@ std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Un
         if (leverage < kAllOfOne) continue;
         warnings.push_back(fmt::format(
             "pair {} alone fixes a part of what is free (leverage {:.2f}): its image lies near a fold, where "
-            "it moves {:.0f} times as far as the median pair's, so that the fit may rest there, far from where "
-            "it should, with standard deviations that are too small; leave it out, or match by another "
-            "--match, and see whether the answer stays",
+            "it moves {:.0f} times as far as the median pair's, and an error of its own would not show; "
+            "leave "
+            "it out, and see whether the answer stays",
             p + 1, leverage, lengths[p] / median));
     }
     return warnings;

@@ -196,6 +196,9 @@ double predicted_fall(const SingularValues& svd, double lambda) {
 
 constexpr double kFirstDamping = 1e-4;  // share of the largest squared singular value
 constexpr int kMostTrials = 30;         // of damping, before an iteration gives up
+/// Share of the cost that the linear problem may still promise to take away where it rests.
+constexpr double kRest = 1e-6;
+constexpr double kNoFall = 1e-14;  // of squared singular values, to the largest: nothing is promised there
 
 }  // namespace
 
@@ -259,7 +262,9 @@ LeastSquaresReport minimise(const LeastSquares& problem, const LeastSquaresParam
             }
         }
         if (small || !stepped) {
-            report.converged = true;
+            // Where derivatives promise a fall that no step finds, it stands at a fold or a jump.
+            const double promised = predicted_fall(svd, kNoFall * largest);
+            report.converged = stepped || promised <= std::max(kRest * report.cost, params.negligible_fall);
             return report;
         }
     }

@@ -111,11 +111,13 @@ struct LeastSquaresParams {
     int most_iterations = 100;
     double step_tolerance = 1e-12;  // largest component of a step, in the unknowns' scales
     double cost_tolerance = 1e-12;  // relative fall of the cost
+    double negligible_fall = 0;     // of the cost: what derivatives may promise in vain
 };
 
 struct LeastSquaresReport {
     int iterations = 0;  // steps taken
     double cost = 0;     // at the end
+    /// Steps have become small, or no step lowers the cost and the derivatives promise none that would.
     bool converged = false;
 };
 
