@@ -34,7 +34,13 @@ function(trilens_unite target)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")
   foreach(source IN LISTS sources)
     file(STRINGS ${source} kernel REGEX "hwy/foreach_target\\.h" LIMIT_COUNT 1)
-    if(NOT kernel)
+    if(kernel)
+      # Clang takes minutes to check each of them for undefined behaviour, of which vector instructions have little.
+      if(TRILENS_SANITIZE)
+        set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS -fno-sanitize=undefined
+          SKIP_PRECOMPILE_HEADERS ON)
+      endif()
+    else()
       # By rooms, whatever folders are inside of them: src/ROOM/..., tests/ROOM/..., ROOM/...
       file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${source})
       set(together ${TRILENS_UNITY_BATCH})
