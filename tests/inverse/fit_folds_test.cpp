@@ -86,7 +86,7 @@ struct FoldCase {
 }  // namespace
 
 TEST_CASE("fits with pairs near folds err as much as their covariances tell", "[inverse][fit][law]") {
-    constexpr unsigned kDraws = 10;
+    constexpr unsigned kDraws = 16;
     constexpr double kSigma = 0.3;
     for (const FoldCase one : {FoldCase{true, FitMatch::kRay}, FoldCase{true, FitMatch::kNearest},
                                FoldCase{false, FitMatch::kRay}, FoldCase{false, FitMatch::kNearest}}) {
@@ -117,8 +117,8 @@ TEST_CASE("fits with pairs near folds err as much as their covariances tell", "[
         const double median = errors[kDraws / 2], third = errors[kDraws - 3], worst = errors.back();
         CAPTURE(median, third, worst);
         CHECK(median > 0.4);
-        CHECK(median < 2.2);  // of ten draws; 0.84 is right
-        CHECK(third < 8);
+        CHECK(median < 2.2);  // of so few draws; 0.84 is right
+        CHECK(third < 4);
         CHECK(worst < 200);
     }
 }

@@ -6,9 +6,12 @@
 #include "base/util/format.h"
 #include "fit_scenes.h"
 #include "inverse/fit/fit.h"
+#include "inverse/fit/fit_problem.h"
 #include "scene/read/override.h"
+#include "support/draw.h"
 #include "support/test.h"
 #include "trilens/project.h"
+#include "trilens/render.h"
 #include "trilens/scene.h"
 
 using namespace trilens;
@@ -142,4 +145,41 @@ TEST_CASE("a pair near a fold, which fixes a number alone, is named; few pairs, 
     const std::vector<std::string> warnings = warned(20, 1000);
     REQUIRE(warnings.size() == 1);
     CHECK(warnings[0].find("pair 5 alone fixes") == 0);
+}
+
+TEST_CASE("a pair that keeps its path is lost where its pixel's ray goes over another optic",
+          "[inverse][fit]") {
+    const Scene scene = parse_scene(R"({"version": 1, "film": {"width": 320, "height": 240},
+ "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 0, 6], "at": [0, 0, 0]}}],
+ "materials": [{"name": "chrome", "metallicFactor": 1, "roughnessFactor": 0}],
+ "meshes": [{"name": "behind", "role": "optic", "material": "chrome",
+             "primitive": {"type": "sphere", "center": [0, 0, -3], "radius": 2}},
+            {"name": "before", "role": "optic", "material": "chrome",
+             "primitive": {"type": "sphere", "center": [0, 0, 0], "radius": 0.6}}]})");
+    // Its image lies over the one behind, beside the one before; its pixel is off by so much that it shows
+    // that.
+    const Vec2 image(215, 120);
+    const ShotRays shot = Renderer(scene).shoot(std::vector<Vec2>{image});
+    REQUIRE(shot.events_of(shot.rays[0]).size() == 1);
+    REQUIRE(shot.events_of(shot.rays[0])[0].optic == 0);
+    FitPair pair;
+    pair.pixel = {180, 120};
+    pair.point = shot.rays[0].origin + 3.0 * shot.rays[0].direction;
+    pair.word = "R";
+    pair.guess = image;
+    pair.events = 1;
+    Json document = resolved_json(scene);
+    const std::vector<FitParameter> free =
+        find_parameters(document, std::vector<std::string>{"/meshes/0/primitive/radius"}, "scene", 3);
+    for (const bool keeps : {true, false}) {
+        FitProblem problem(scene, document, free, {pair});
+        problem.keeps_paths = keeps;
+        problem.residual = FitResidual::kImage;
+        const Linearisation at = problem.linearise();
+        CHECK(std::hypot(at.residuals[0] - 35, at.residuals[1]) < 1e-6);
+        problem.residual = FitResidual::kRay;
+        problem.linearise();
+        CHECK(problem.pairs()[0].is_lost == keeps);
+        CHECK(problem.pairs()[0].path.at(0).optic == (keeps ? 0 : 1));
+    }
 }

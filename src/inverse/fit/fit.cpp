@@ -240,16 +240,15 @@ bool all_lost(const std::vector<FitPair>& pairs) {
     return lost_of(pairs) == pairs.size();
 }
 
-/// What a lost pair counts for where exact images begin: less near the answer, for a pixel that noise moved
-/// beyond the edge of what can be seen is to be lost there, and must not hold all others where it is not.
-double lost_sigmas(const Linearisation& at, std::size_t pairs) {
-    constexpr double kLeast = 12, kMost = 40, kOfMedian = 6;
+/// What a lost pair counts for where exact images begin, of what it did until then: less near the answer, for
+/// a pixel that noise moved beyond the edge of what can be seen is to be lost there, and must not hold all
+/// others where it is not.
+double lost_sigmas(const FitProblem& problem, const Linearisation& at) {
+    constexpr double kLeast = 12, kOfMedian = 6;
     std::vector<double> lengths;
-    for (std::size_t i = 0; i < pairs; ++i)
+    for (std::size_t i = 0; i < problem.pairs().size(); ++i)
         lengths.push_back(std::hypot(at.residuals[2 * i], at.residuals[2 * i + 1]));
-    std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(pairs / 2),
-                     lengths.end());
-    return std::clamp(kOfMedian * lengths[pairs / 2], kLeast, kMost);
+    return std::clamp(kOfMedian * median_of(std::move(lengths)), kLeast, problem.lost_sigmas);
 }
 
 }  // namespace
@@ -287,7 +286,9 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
         problem.residual = FitResidual::kImage;
         result.rms_start = rms_of(problem.pairs(), problem.linearise().residuals);
         problem.residual = FitResidual::kRay;
+        problem.keeps_paths = true;
     }
+    const std::vector<FitPair> matched = problem.pairs();
     const Linearisation first = problem.linearise();
     if (request.match == FitMatch::kRay) {
         if (all_lost(problem.pairs()))
@@ -301,10 +302,12 @@ FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, c
         rough.step_tolerance = 1e-7, rough.cost_tolerance = 1e-3;
         result.iterations += minimise(problem.least_squares(), rough).iterations;
         problem.linearise();  // guesses and events of the end
+    } else {
+        problem.pairs() = matched;
     }
 
     problem.residual = FitResidual::kImage;
-    problem.lost_sigmas = lost_sigmas(problem.linearise(), given.size());
+    problem.lost_sigmas = lost_sigmas(problem, problem.linearise());
     const LeastSquaresReport report = minimise(problem.least_squares(), params);
     result.iterations += report.iterations;
     result.converged = report.converged;

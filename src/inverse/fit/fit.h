@@ -76,8 +76,7 @@ constexpr const char* pair_state_name(PairState state) {
 /// the optics that its ray meets. Outlier: it lies beyond FitRequest::huber.
 struct FittedPair {
     PairState state = PairState::kUsed;
-    Vec2 residual{
-        0};  // pixels: image of the point minus pixel, near a fold as far as it is told; NaN where lost
+    Vec2 residual{0};  // pixels: image of the point minus pixel, near a fold less (see fit_scene); NaN: lost
     std::string path;  // its events, as FitRequest::path has them
 };
 

@@ -43,10 +43,7 @@ double usual_rate_of(const std::vector<FitPair>& pairs) {
     for (const FitPair& pair : pairs)
         if (const double rate = fastest_motion(pair.metric).rate * pair.distance; rate > 0)
             rates.push_back(rate);
-    if (rates.empty()) return std::numeric_limits<double>::infinity();
-    const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
-    std::nth_element(rates.begin(), middle, rates.end());
-    return *middle;
+    return rates.empty() ? std::numeric_limits<double>::infinity() : median_of(std::move(rates));
 }
 
 /// Whether a pair's path is known, if only how many events it has.
@@ -208,12 +205,12 @@ FoldWhitening FitProblem::whitening_at(FitPair& pair, const Vec2& pixel) const {
     return {along, std::clamp(pair.spread / unit, 1.0, most)};
 }
 
-/// By the ray of its pixel; in the second part of the fit over the path that is known.
+/// By the ray of its pixel; over the path that is known, if it is to be kept.
 std::optional<PathDerivatives> FitProblem::linearise_ray(
     FitPair& pair, std::span<const ParameterDifference> parameters) const {
     std::optional<ShotPath> path = shoot(scene_, pair, pair.pixel);
     if (!path || (path->events.empty() && pair.word != "D")) return std::nullopt;
-    const bool is_known = residual == FitResidual::kImage;
+    const bool is_known = residual == FitResidual::kImage || keeps_paths;
     if (is_known && !keeps_path(*path, pair)) return std::nullopt;
     // A word says how many events there are.
     cut_path(*path, is_known            ? pair.events
@@ -229,7 +226,7 @@ std::optional<PathDerivatives> FitProblem::linearise_ray(
     pair.metric = derivatives->by_point;
     pair.distance = length(nearest - path->last.origin);
     pair.whitening = whitening_at(pair, pair.pixel);
-    if (is_known) pair.is_near_fold |= pair.whitening.variance > kFoldVariance;
+    if (residual == FitResidual::kImage) pair.is_near_fold |= pair.whitening.variance > kFoldVariance;
     pair.off = pair.whitening.of(seen_offset(pair.metric, pair.point - nearest));
     for (Vec2& moved : derivatives->by_parameter) moved = pair.whitening.of(moved);
     return derivatives;

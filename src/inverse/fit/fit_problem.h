@@ -272,6 +272,8 @@ class FitProblem {
     /// kImage: a pair without a path takes that of its pixel's ray, as soon as there is one.
     bool finds_paths = true;
     FitResidual residual = FitResidual::kRay;
+    /// kRay: a pair's ray counts only over the optics that its path has already.
+    bool keeps_paths = false;
     /// The residual of a lost pair, in sigmas: constant, so that it pulls nowhere.
     double lost_sigmas = 40;
     const Progress* progress = nullptr;
@@ -317,8 +319,8 @@ class FitProblem {
     std::vector<FitPair> pairs_;
     FitScene scene_;
     int images_linearised_ = 0;
-    double usual_rate_ =
-        std::numeric_limits<double>::infinity();  // of images, pixels for the angle of a last ray
+    /// Of images: pixels for the angle of a last ray.
+    double usual_rate_ = std::numeric_limits<double>::infinity();
 };
 
 /// Starts each pair at an image of its point in the world as it is; pairs without one are lost.
@@ -332,6 +334,9 @@ std::vector<Media> media_of_pairs(const FitScene& scene, std::span<const FitPair
 /// they stand in. `began`: media_of_pairs where the fit began.
 std::vector<std::string> media_warnings(const Scene& scene, const FitProblem& problem,
                                         std::span<const Media> began);
+
+/// The smallest value that half of all do not exceed, or the next; some values.
+double median_of(std::vector<double> values);
 
 /// What must be said of pairs that alone fix a part of what is free, because their images lie near a fold:
 /// each by its number from 1 on, as the pairs were given. `jacobian`: reweighted, two rows a pair first;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/util/format.h"
@@ -26,6 +27,12 @@ double leverage_of(std::span<const double> row, const DenseMatrix& covariance) {
 
 }  // namespace
 
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Uncertainty& found,
                                            const std::vector<FitPair>& pairs) {
     std::vector<double> lengths(pairs.size());
@@ -39,8 +46,7 @@ std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Un
     std::vector<std::string> warnings;
     if (used.empty() || static_cast<double>(found.rank) > kFewPairs * static_cast<double>(used.size()))
         return warnings;
-    std::nth_element(used.begin(), used.begin() + static_cast<std::ptrdiff_t>(used.size() / 2), used.end());
-    const double median = used[used.size() / 2];
+    const double median = median_of(std::move(used));
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (!(lengths[p] > kNearFold * median)) continue;  // lost ones have none
         const double leverage = leverage_of(jacobian.row(2 * p), found.covariance) +
@@ -49,8 +55,8 @@ std::vector<std::string> leverage_warnings(const DenseMatrix& jacobian, const Un
         warnings.push_back(fmt::format(
             "pair {} alone fixes a part of what is free (leverage {:.2f}): its image lies near a fold, where "
             "it moves {:.0f} times as far as the median pair's, and an error of its own would not show; "
-            "leave "
-            "it out, and see whether the answer stays",
+            "leave it "
+            "out, and see whether the answer stays",
             p + 1, leverage, lengths[p] / median));
     }
     return warnings;
