@@ -98,7 +98,7 @@ TEST_CASE("what is visible, left in the order of vectors, holds the hits of the 
 }
 
 TEST_CASE("the vector engine draws the plain engine's bits where rays that meet see a tiny triangle",
-          "[projector][oracle]") {
+          "[projector][oracle][many]") {
     for (const std::string& set : kernel_instruction_sets()) {
         REQUIRE(use_instruction_set(set));
         Random random(28);

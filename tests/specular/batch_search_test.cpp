@@ -82,7 +82,7 @@ TEST_CASE("many points in one search have each the list that it has alone", "[sp
 }
 
 TEST_CASE("points on caustics, on the surface and on one another have the lists that they have alone",
-          "[specular][oracle]") {
+          "[specular][oracle][many]") {
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
     SpecularQuery query;
