@@ -179,7 +179,24 @@ TEST_CASE("one glass of a catalogue that has no index is refused where a lens as
     CHECK(refused(with("EMPTY"), "a.zmx") ==
           "a.zmx: line 6: a.agf: line 4: the glass EMPTY has no coefficients (CD)");
     CHECK(refused(with("X"), "a.zmx") ==
-          "a.zmx: line 6: a.agf: line 5: the glass X has no index from 1 to 10");
+          "a.zmx: line 6: a.agf: line 5: the glass X has no index at d above 1 and up to 10");
+
+    // A placeholder instead of an index, and a formula that is asked beyond what was measured; N-BK7's own
+    // coefficients.
+    const auto with_range = [](const std::string& range) {
+        return parse_agf(
+            "NM GE 9 0 1.0 0.0\nNM BK7 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0.231792344 "
+            "0.0200179144 1.01046945 103.560653\nLD " +
+                range + "\n",
+            "a.agf");
+    };
+    CHECK(with_range("0.3 2.5")[0].fault ==
+          "a.agf: line 1: the glass GE has no index at d above 1 and up to 10");
+    CHECK(with_range("0.4861 0.6563")[1].fault.empty());
+    CHECK(with_range("0 0")[1].fault.empty());
+    CHECK(with_range("0.55 18")[1].fault ==
+          "a.agf: line 4: the glass BK7 has an index from 0.55 to 18 micrometres, not at F, d and C");
+    CHECK(with_range("0.3 0.6")[1].fault.ends_with("from 0.3 to 0.6 micrometres, not at F, d and C"));
 }
 
 TEST_CASE("glasses are read from catalogues and private tables, before those that are built in",

@@ -1,8 +1,10 @@
-// Reads glass catalogues of Zemax: a line NM for each glass, and its coefficients in a line CD.
+// Reads glass catalogues of Zemax: a line NM for each glass, its coefficients in a line CD, and the
+// wavelengths for which they are meant in a line LD.
 #include <algorithm>
 #include <array>
 #include <optional>
 
+#include "base/util/format.h"
 #include "lens/dispersion.h"
 #include "scene/formats/lens_file.h"
 #include "scene/formats/lens_lines.h"
@@ -39,6 +41,7 @@ class CatalogueReader : LensLines {
                        : formula == 2 ? std::optional(Formula::kSellmeier)
                                       : std::nullopt;
             glasses_.push_back({.name = in_capitals(words[1])});
+            is_by_formula_ = formula_.has_value();
             if (formula_)
                 set_fault("has no coefficients (CD)");
             else
@@ -47,7 +50,19 @@ class CatalogueReader : LensLines {
             if (glasses_.empty()) fail("coefficients before a glass (NM)");
             if (formula_) set(words);
             formula_.reset();
+        } else if (words[0] == "LD" && is_by_formula_ && glasses_.back().fault.empty()) {
+            check_range(number(words, 1), number(words, 2));
         }
+    }
+
+    /// Beyond the wavelengths from one to the other, in micrometres, a formula's index is none that was
+    /// measured.
+    void check_range(double from, double to) {
+        constexpr double kRounding = 1e-3;
+        const double least = wavelength_of(SpectralLine::kF) + kRounding,
+                     most = wavelength_of(SpectralLine::kC) - kRounding;
+        if (from < to && !(from <= least && to >= most))
+            set_fault(fmt::format("has an index from {} to {} micrometres, not at F, d and C", from, to));
     }
 
     void set(const std::vector<std::string_view>& words) {
@@ -65,7 +80,8 @@ class CatalogueReader : LensLines {
     void set_by_abbe(double index, double abbe) {
         glasses_.back().index = index;
         glasses_.back().abbe = std::max(abbe, 0.0);
-        if (!(index >= 1 && index <= 10)) set_fault("has no index from 1 to 10");
+        // Catalogues have an index of 1 where there is none.
+        if (!(index > 1 && index <= 10)) set_fault("has no index at d above 1 and up to 10");
     }
 
     /// Of the last glass. Infrared materials have no index in the visible, and most lenses do not ask.
@@ -76,6 +92,7 @@ class CatalogueReader : LensLines {
 
     const std::string& text_;
     std::optional<Formula> formula_;  // of the last glass, whose coefficients are to come
+    bool is_by_formula_ = false;      // the last glass
 };
 
 }  // namespace
