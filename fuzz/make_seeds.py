@@ -206,6 +206,11 @@ t interpolateboundary 1/0/0 2
           + struct.pack("<I", len(document)) + b"JSON" + document + struct.pack("<I", len(data)) + b"BIN\0" + data)
     gltf["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
     write("gltf", "room.gltf", text(gltf))
+    instances = json.loads(text(gltf))
+    instances["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
+    instances["extensionsUsed"] += instances["extensionsRequired"]
+    instances["nodes"][1]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0, "SCALE": 0}}}
+    write("gltf", "instances.gltf", text(instances))
     bad_models(gltf, data)
 
 

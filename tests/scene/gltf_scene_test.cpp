@@ -53,6 +53,57 @@ TEST_CASE("a glTF is a scene: instances through the hierarchy, its camera and it
     CHECK(again.warnings.empty());
 }
 
+TEST_CASE("instances of a glTF's node are as many nodes within it", "[scene][law]") {
+    const std::string folder = scratch_dir("scene_gltf_instances");
+    GltfBuffer buffer = make_buffer();
+    const int translations = buffer.add({0, 0, 0, 2, 0, 0, 0, 3, 1}, "VEC3", 3);
+    const int rotations =
+        buffer.add({0, 0, 0, 1, 0, 0, std::sqrt(0.5), std::sqrt(0.5), 0, 1, 0, 0}, "VEC4", 4);
+    const int scales = buffer.add({1, 1, 1, 2, 1, 1, 1, -1, 3}, "VEC3", 3);
+    const auto with = [&](const std::string& attributes) {
+        GltfParts parts;
+        parts.nodes = R"([{"name":"rig","translation":[0,0,5],"rotation":[0.6,0,0,0.8],"children":[1]},
+            {"name":"tile","mesh":0,"scale":[1,2,1],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)" +
+                      attributes + "}}}}]";
+        parts.more =
+            R"(,"extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"])";
+        return parts;
+    };
+    const std::string t = "\"TRANSLATION\":" + std::to_string(translations),
+                      r = "\"ROTATION\":" + std::to_string(rotations),
+                      s = "\"SCALE\":" + std::to_string(scales);
+    const Scene scene = load(write_gltf(folder, with(t + "," + r + "," + s), buffer));
+    // The same by nodes.
+    GltfParts nodes = with("");
+    nodes.more = "";
+    nodes.nodes = R"([{"translation":[0,0,5],"rotation":[0.6,0,0,0.8],"children":[1]},
+        {"scale":[1,2,1],"children":[2,3,4]},{"name":"tile","mesh":0},
+        {"name":"tile","mesh":0,"translation":[2,0,0],"rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,1,1]},
+        {"name":"tile","mesh":0,"translation":[0,3,1],"rotation":[0,1,0,0],"scale":[1,-1,3]}])";
+    const Scene same = load(write_gltf(folder, nodes));
+    REQUIRE(scene.meshes.size() == 3);
+    REQUIRE(same.meshes.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(scene.meshes[i].name == same.meshes[i].name);
+        REQUIRE(scene.meshes[i].object.points.size() == same.meshes[i].object.points.size());
+        for (std::size_t k = 0; k < same.meshes[i].object.points.size(); ++k)
+            CHECK(length(scene.meshes[i].object.points[k] - same.meshes[i].object.points[k]) < 1e-6);
+        CHECK(scene.meshes[i].object.triangles == same.meshes[i].object.triangles);
+    }
+    CHECK(!warns(scene, "EXT_mesh_gpu_instancing"));
+    ImportOptions tiles;
+    tiles.optics = {"tile"};
+    CHECK(load(write_gltf(folder, with(t), buffer), tiles).meshes[2].role == Role::kOptic);
+    CHECK(load(write_gltf(folder, with(""), buffer)).meshes.size() == 1);
+
+    const std::string place = ": /nodes/1/extensions/EXT_mesh_gpu_instancing";
+    CHECK(load_error(write_gltf(folder, with(t + ",\"SCALE\":7"), buffer)) ==
+          place + ": its attributes have 3 entries and 2");
+    CHECK(begins_with(load_error(write_gltf(folder, with("\"SCALE\":77"), buffer)),
+                      place + "/attributes/SCALE: "));
+    CHECK(begins_with(load_error(write_gltf(folder, with("\"SCALE\":1"), buffer)), ": /accessors/1: "));
+}
+
 TEST_CASE("a glTF without camera and lights gets some, and says so", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_studio");
     const Scene scene = load(write_gltf(folder, GltfParts()));

@@ -1,12 +1,59 @@
-// Which extensions of glTF are known.
+// Extensions of glTF: which are known, and instances of a node's mesh (EXT_mesh_gpu_instancing) as nodes of
+// their own.
+#include <optional>
 #include <set>
 #include <string>
 
 #include <tiny_gltf.h>
 
+#include "scene/formats/gltf_file.h"
 #include "scene/formats/gltf_parts.h"
 
 namespace trilens {
+namespace {
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+/// Where the instances stand within their node: as many entries of each kind, or none of it.
+struct InstancePlaces {
+    std::size_t count = 0;
+    std::vector<double> translations, rotations, scales;
+};
+
+/// None where the node has no instances, or none that an attribute of the three places.
+std::optional<InstancePlaces> read_places(const GltfSource& source, std::size_t node,
+                                          const std::string& place) {
+    const tinygltf::ExtensionMap& all = source.model.nodes[node].extensions;
+    const auto found = all.find(kInstancing);
+    if (found == all.end()) return std::nullopt;
+    const Json extension = json_of_gltf(found->second);
+    // An empty object of attributes is none to the library that reads the file.
+    if (!extension.is_object() || !extension.contains("attributes")) return std::nullopt;
+    const Json& attributes = extension.at("attributes");
+    if (!attributes.is_object()) source.fail(place + "/attributes", "must be an object");
+    InstancePlaces places;
+    const auto read = [&](const char* name, int width, std::vector<double>& into) {
+        if (!attributes.contains(name)) return;
+        if (!attributes.at(name).is_number_integer())
+            source.fail(place, std::string(name) + " names no accessor");
+        into = read_gltf_accessor(source.model, attributes.at(name).get<int>(), width, source.file);
+        const std::size_t count = into.size() / static_cast<std::size_t>(width);
+        if (places.count > 0 && places.count != count)
+            source.fail(place, "its attributes have " + std::to_string(places.count) + " entries and " +
+                                   std::to_string(count));
+        places.count = count;
+    };
+    read("TRANSLATION", 3, places.translations);
+    read("ROTATION", 4, places.rotations);
+    read("SCALE", 3, places.scales);
+    return places.count > 0 ? std::optional(std::move(places)) : std::nullopt;
+}
+
+Vec3 three_of(const std::vector<double>& numbers, std::size_t i) {
+    return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+}
+
+}  // namespace
 
 void check_gltf_extensions(GltfSource& source) {
     static const std::set<std::string> known = {"KHR_materials_unlit",
@@ -19,12 +66,43 @@ void check_gltf_extensions(GltfSource& source) {
                                                 "KHR_materials_specular",
                                                 "KHR_materials_dispersion",
                                                 "EXT_texture_webp",
+                                                kInstancing,
                                                 "KHR_materials_emissive_strength"};
     for (const std::string& name : source.model.extensionsRequired)
         if (known.count(name) == 0)
             source.fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
     for (const std::string& name : source.model.extensionsUsed)
         if (known.count(name) == 0) source.warn("the extension '" + name + "' is ignored");
+}
+
+void read_gltf_instances(GltfSource& source, GltfModel& into) {
+    const std::size_t count = into.nodes.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string place = "/nodes/" + std::to_string(i) + "/extensions/" + kInstancing;
+        const std::optional<InstancePlaces> places = read_places(source, i, place);
+        if (!places || into.nodes[i].mesh < 0) continue;
+        const GltfMesh& mesh = into.meshes[static_cast<std::size_t>(into.nodes[i].mesh)];
+        if (into.nodes[i].skin >= 0 || !mesh.weights.empty() || !into.nodes[i].weights.empty()) {
+            source.warn("instances of a mesh with a skin or morph targets are one");
+            continue;
+        }
+        // What all have in common, in the node's frame.
+        GltfNode instance;
+        instance.name = into.nodes[i].name;
+        instance.mesh = into.nodes[i].mesh;
+        instance.extras = into.nodes[i].extras;
+        into.nodes[i].mesh = -1;
+        for (std::size_t k = 0; k < places->count; ++k) {
+            if (!places->translations.empty()) instance.translation = three_of(places->translations, k);
+            if (!places->scales.empty()) instance.scale = three_of(places->scales, k);
+            if (!places->rotations.empty())
+                for (int c = 0; c < 4; ++c)
+                    instance.rotation[c] = places->rotations[4 * k + static_cast<std::size_t>(c)];
+            if (instance.rotation == Vec4(0)) source.fail(place, "a rotation must not be zero");
+            into.nodes[i].children.push_back(static_cast<int>(into.nodes.size()));
+            into.nodes.push_back(instance);
+        }
+    }
 }
 
 }  // namespace trilens

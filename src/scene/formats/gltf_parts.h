@@ -53,6 +53,9 @@ void read_gltf_meshes(GltfSource& source, GltfModel& into);
 void read_gltf_materials(GltfSource& source, GltfModel& into);
 /// Cameras and KHR_lights_punctual.
 void read_gltf_views(GltfSource& source, GltfModel& into);
+/// Instances of nodes' meshes (EXT_mesh_gpu_instancing) become children of their nodes, whose mesh they take;
+/// after the meshes and nodes, before the nodes' parents are found.
+void read_gltf_instances(GltfSource& source, GltfModel& into);
 /// Skins and animations; after the nodes.
 void read_gltf_motion(GltfSource& source, GltfModel& into);
 

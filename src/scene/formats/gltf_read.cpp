@@ -31,6 +31,7 @@ class Reader {
         read_gltf_meshes(source_, out_);
         read_gltf_views(source_, out_);
         for (std::size_t i = 0; i < in_.nodes.size(); ++i) read_node(i);
+        read_gltf_instances(source_, out_);
         find_parents();
         read_roots();
         read_gltf_motion(source_, out_);
