@@ -95,6 +95,11 @@ TEST_CASE("instances of a glTF's node are as many nodes within it", "[scene][law
     tiles.optics = {"tile"};
     CHECK(load(write_gltf(folder, with(t), buffer), tiles).meshes[2].role == Role::kOptic);
     CHECK(load(write_gltf(folder, with(""), buffer)).meshes.size() == 1);
+    GltfParts posed = with(t);
+    posed.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0,"targets":[{"POSITION":2}]})";
+    const Scene one = load(write_gltf(folder, posed, buffer));
+    CHECK(one.meshes.size() == 1);
+    CHECK(warns(one, "instances of a mesh with a skin or morph targets are one"));
 
     const std::string place = ": /nodes/1/extensions/EXT_mesh_gpu_instancing";
     CHECK(load_error(write_gltf(folder, with(t + ",\"SCALE\":7"), buffer)) ==

@@ -171,11 +171,10 @@ PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, co
 
 /// Reads a .gltf or .glb file (tinygltf). Lists, strips and fans of triangles; indexed or not; sparse
 /// accessors; skins, morph targets, animations, cameras, KHR_lights_punctual, KHR_mesh_quantization,
-/// EXT_mesh_gpu_instancing,
-/// KHR_texture_transform, EXT_texture_webp and the extensions of materials that scenes have. What is left out
-/// (points, lines, further extensions) is in `warnings`. Throws InputError(file, place in the glTF) for
-/// anything malformed, for nodes that form no trees, and for required extensions that are not known
-/// (KHR_draco_mesh_compression among them).
+/// EXT_mesh_gpu_instancing, KHR_texture_transform, EXT_texture_webp and the extensions of materials that
+/// scenes have. What is left out (points, lines, further extensions) is in `warnings`. Throws
+/// InputError(file, place in the glTF) for anything malformed, for nodes that form no trees, and for required
+/// extensions that are not known (KHR_draco_mesh_compression among them).
 GltfModel read_gltf(const std::string& file);
 
 /// The default scene as one mesh in the frame of the file: nodes depth first, each mesh's primitives in

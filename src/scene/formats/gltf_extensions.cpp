@@ -1,5 +1,6 @@
 // Extensions of glTF: which are known, and instances of a node's mesh (EXT_mesh_gpu_instancing) as nodes of
 // their own.
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
@@ -49,6 +50,14 @@ std::optional<InstancePlaces> read_places(const GltfSource& source, std::size_t 
     return places.count > 0 ? std::optional(std::move(places)) : std::nullopt;
 }
 
+/// Whether bones or morph targets move it within its node.
+bool is_posed(const GltfModel& model, const GltfNode& node) {
+    const std::vector<GltfPrimitive>& all = model.meshes[static_cast<std::size_t>(node.mesh)].primitives;
+    return node.skin >= 0 || std::any_of(all.begin(), all.end(), [](const GltfPrimitive& primitive) {
+               return !primitive.targets.empty();
+           });
+}
+
 Vec3 three_of(const std::vector<double>& numbers, std::size_t i) {
     return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
 }
@@ -81,8 +90,7 @@ void read_gltf_instances(GltfSource& source, GltfModel& into) {
         const std::string place = "/nodes/" + std::to_string(i) + "/extensions/" + kInstancing;
         const std::optional<InstancePlaces> places = read_places(source, i, place);
         if (!places || into.nodes[i].mesh < 0) continue;
-        const GltfMesh& mesh = into.meshes[static_cast<std::size_t>(into.nodes[i].mesh)];
-        if (into.nodes[i].skin >= 0 || !mesh.weights.empty() || !into.nodes[i].weights.empty()) {
+        if (is_posed(into, into.nodes[i])) {
             source.warn("instances of a mesh with a skin or morph targets are one");
             continue;
         }
