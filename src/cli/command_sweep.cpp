@@ -222,6 +222,8 @@ SweepOptions from_anywhere(SweepOptions options) {
 /// Writes the plan, and a script that hands it to a batch system: on standard output, or into the folder.
 Answer submit(const SubmitOptions& given, Console& console) {
     const SweepOptions options = from_anywhere(given.sweep);
+    if (given.prints && options.replace)
+        throw UsageError("--print shows a script, and --replace would remove the runs that the folder holds");
     const std::vector<SweepRequest> requests = sweep_requests(options);
     if (requests.size() > 1)
         throw UsageError("a gallery of scenes is several sweeps: submit each, or sweep over scene=A,B");
@@ -271,7 +273,8 @@ Command sweep_submit_command() {
                                       .range = {1, 1000000}},
                                      {.names = "--print",
                                       .target = &submitted->prints,
-                                      .help = "print the script; else it is written into the folder"}}}),
+                                      .help = "print the script; else it is written into the folder, "
+                                              "which has the plan either way"}}}),
                  .schema = "sweep"};
     farm.body = [submitted](Console& console) { return submit(*submitted, console); };
     return farm;

@@ -63,6 +63,18 @@ TEST_CASE("the facets' truth is that of each run's own facets, and nothing is di
     CHECK(column(limit, "disp_mean_px").front() > 0.1);
 }
 
+TEST_CASE("a script that is only shown removes no runs", "[cli][sweep][bad-input]") {
+    const std::string folder = scratch_dir("cli_sweep_shown");
+    const std::string scene = write_file(folder, "room.json", small_scene()), out = folder + "/out";
+    const std::string words = scene + " --size 48x36 --over resolution=1,2 -o " + out;
+    REQUIRE(run_trilens("sweep run " + words).exit_code == 0);
+    const CommandRun refused = run_trilens("sweep submit " + words + " --print --replace");
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err.find("--replace would remove the runs") != std::string::npos);
+    CHECK(run_trilens("sweep submit " + words + " --print").exit_code == 0);
+    for (const char* run : {"n0001", "n0002"}) CHECK(fs::exists(out + "/runs/" + run + "/DONE"));
+}
+
 TEST_CASE("corner rays, grids and errors asked for are axes, against one truth", "[cli][sweep]") {
     const std::string folder = scratch_dir("cli_sweep_facet_axes");
     const std::string scene = write_file(folder, "room.json", small_scene());

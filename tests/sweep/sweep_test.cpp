@@ -372,3 +372,12 @@ TEST_CASE("sweep: a folder that cannot be written is an OutputError, one without
     replace_text_file(folder + "/manifest.json", "{\"schema\": 3}");
     CHECK_THROWS_AS(report_sweep(folder), InputError);
 }
+
+TEST_CASE("a plot's points rise along its axis, in whatever order the runs stand", "[sweep]") {
+    SweepFit fit;
+    fit.points = {{8, 0.1, true}, {2, 1.6, true}, {4, 0.4, true}};
+    const PlotSeries series = plot_series(fit, "mean");
+    REQUIRE(series.points.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(series.points[i].x == std::exp2(static_cast<double>(i) + 1));
+    CHECK(series.points[0].y == 1.6);
+}

@@ -166,6 +166,7 @@ const SweepFit* find_fit_off_folds(const std::vector<SweepFit>& fits, const std:
 PlotSeries plot_series(const SweepFit& fit, const std::string& name) {
     PlotSeries series{name, {}, std::nullopt};
     for (const SweepPoint& point : fit.points) series.points.push_back({point.n, point.value});
+    std::ranges::stable_sort(series.points, {}, &Vec2::x);
     if (fit.order && fit.constant) series.fit = PlotFit{*fit.order, *fit.constant};
     return series;
 }
