@@ -122,7 +122,8 @@ class Cluster:
                 found.append((is_job, int(entry)))
         return [process for _, process in sorted(found)]
 
-    def send(self, signal_number, processes):
+    @staticmethod
+    def send(signal_number, processes):
         for process in processes:
             try:
                 os.kill(process, signal_number)

@@ -41,7 +41,6 @@ class CatalogueReader : LensLines {
                        : formula == 2 ? std::optional(Formula::kSellmeier)
                                       : std::nullopt;
             glasses_.push_back({.name = in_capitals(words[1])});
-            is_by_formula_ = formula_.has_value();
             if (formula_)
                 set_fault("has no coefficients (CD)");
             else
@@ -50,9 +49,14 @@ class CatalogueReader : LensLines {
             if (glasses_.empty()) fail("coefficients before a glass (NM)");
             if (formula_) set(words);
             formula_.reset();
-        } else if (words[0] == "LD" && is_by_formula_ && glasses_.back().fault.empty()) {
+        } else if (words[0] == "LD" && has_formula()) {
             check_range(number(words, 1), number(words, 2));
         }
+    }
+
+    /// Whether the last glass has its indices by a formula.
+    bool has_formula() const {
+        return !glasses_.empty() && glasses_.back().fault.empty() && glasses_.back().index_c > 0;
     }
 
     /// Beyond the wavelengths from one to the other, in micrometres, a formula's index is none that was
@@ -92,7 +96,6 @@ class CatalogueReader : LensLines {
 
     const std::string& text_;
     std::optional<Formula> formula_;  // of the last glass, whose coefficients are to come
-    bool is_by_formula_ = false;      // the last glass
 };
 
 }  // namespace

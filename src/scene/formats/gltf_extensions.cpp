@@ -18,35 +18,31 @@ constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 /// Where the instances stand within their node: as many entries of each kind, or none of it.
 struct InstancePlaces {
     std::size_t count = 0;
-    std::vector<double> translations, rotations, scales;
+    std::vector<Vec3> translations, scales;
+    std::vector<Vec4> rotations;
 };
 
-/// None where the node has no instances, or none that an attribute of the three places.
+/// None where the node has no instances, or none that an attribute of the three places. The keys' types are
+/// checked.
 std::optional<InstancePlaces> read_places(const GltfSource& source, std::size_t node,
                                           const std::string& place) {
     const tinygltf::ExtensionMap& all = source.model.nodes[node].extensions;
     const auto found = all.find(kInstancing);
     if (found == all.end()) return std::nullopt;
-    const Json extension = json_of_gltf(found->second);
-    // An empty object of attributes is none to the library that reads the file.
-    if (!extension.is_object() || !extension.contains("attributes")) return std::nullopt;
-    const Json& attributes = extension.at("attributes");
-    if (!attributes.is_object()) source.fail(place + "/attributes", "must be an object");
+    const Json attributes = json_of_gltf(found->second).value("attributes", Json::object());
     InstancePlaces places;
-    const auto read = [&](const char* name, int width, std::vector<double>& into) {
+    const auto read = [&](const char* name, auto& into) {
         if (!attributes.contains(name)) return;
-        if (!attributes.at(name).is_number_integer())
-            source.fail(place, std::string(name) + " names no accessor");
-        into = read_gltf_accessor(source.model, attributes.at(name).get<int>(), width, source.file);
-        const std::size_t count = into.size() / static_cast<std::size_t>(width);
-        if (places.count > 0 && places.count != count)
+        using Vector = typename std::decay_t<decltype(into)>::value_type;
+        into = read_gltf_vectors<Vector>(source.model, attributes.at(name).get<int>(), source.file);
+        if (places.count > 0 && places.count != into.size())
             source.fail(place, "its attributes have " + std::to_string(places.count) + " entries and " +
-                                   std::to_string(count));
-        places.count = count;
+                                   std::to_string(into.size()));
+        places.count = into.size();
     };
-    read("TRANSLATION", 3, places.translations);
-    read("ROTATION", 4, places.rotations);
-    read("SCALE", 3, places.scales);
+    read("TRANSLATION", places.translations);
+    read("ROTATION", places.rotations);
+    read("SCALE", places.scales);
     return places.count > 0 ? std::optional(std::move(places)) : std::nullopt;
 }
 
@@ -56,10 +52,6 @@ bool is_posed(const GltfModel& model, const GltfNode& node) {
     return node.skin >= 0 || std::any_of(all.begin(), all.end(), [](const GltfPrimitive& primitive) {
                return !primitive.targets.empty();
            });
-}
-
-Vec3 three_of(const std::vector<double>& numbers, std::size_t i) {
-    return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
 }
 
 }  // namespace
@@ -101,11 +93,9 @@ void read_gltf_instances(GltfSource& source, GltfModel& into) {
         instance.extras = into.nodes[i].extras;
         into.nodes[i].mesh = -1;
         for (std::size_t k = 0; k < places->count; ++k) {
-            if (!places->translations.empty()) instance.translation = three_of(places->translations, k);
-            if (!places->scales.empty()) instance.scale = three_of(places->scales, k);
-            if (!places->rotations.empty())
-                for (int c = 0; c < 4; ++c)
-                    instance.rotation[c] = places->rotations[4 * k + static_cast<std::size_t>(c)];
+            if (!places->translations.empty()) instance.translation = places->translations[k];
+            if (!places->rotations.empty()) instance.rotation = places->rotations[k];
+            if (!places->scales.empty()) instance.scale = places->scales[k];
             if (instance.rotation == Vec4(0)) source.fail(place, "a rotation must not be zero");
             into.nodes[i].children.push_back(static_cast<int>(into.nodes.size()));
             into.nodes.push_back(instance);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/math/vec.h"
+
 namespace tinygltf {
 
 class Model;
@@ -35,5 +37,16 @@ namespace trilens {
 /// or beyond 1e30.
 std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int accessor, int components,
                                        const std::string& file);
+
+/// The same as vectors: Vec2, Vec3 or Vec4.
+template <typename Vector>
+std::vector<Vector> read_gltf_vectors(const tinygltf::Model& model, int accessor, const std::string& file) {
+    constexpr int kWidth = Vector::length();
+    const std::vector<double> numbers = read_gltf_accessor(model, accessor, kWidth, file);
+    std::vector<Vector> vectors(numbers.size() / kWidth);
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        for (int c = 0; c < kWidth; ++c) vectors[i][c] = numbers[kWidth * i + static_cast<std::size_t>(c)];
+    return vectors;
+}
 
 }  // namespace trilens

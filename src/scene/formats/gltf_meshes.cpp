@@ -58,12 +58,12 @@ class MeshReader {
 
         GltfPrimitive result;
         result.material = checked(in.material, in_.materials.size(), place, "material");
-        result.positions = vec3s(in.attributes.at("POSITION"));
-        if (in.attributes.count("NORMAL") > 0) result.normals = vec3s(in.attributes.at("NORMAL"));
+        result.positions = vectors<Vec3>(in.attributes.at("POSITION"));
+        if (in.attributes.count("NORMAL") > 0) result.normals = vectors<Vec3>(in.attributes.at("NORMAL"));
         read_tangents(in, place, result);
         const auto uv_set = [&](const char* name) {
             const auto uvs = in.attributes.find(name);
-            return uvs == in.attributes.end() ? std::vector<Vec2>() : vec2s(uvs->second);
+            return uvs == in.attributes.end() ? std::vector<Vec2>() : vectors<Vec2>(uvs->second);
         };
         result.uvs = uv_set("TEXCOORD_0");
         result.second_uvs = uv_set("TEXCOORD_1");
@@ -85,10 +85,8 @@ class MeshReader {
     void read_tangents(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {
         const auto found = in.attributes.find("TANGENT");
         if (found == in.attributes.end() || into.normals.empty()) return;
-        const std::vector<double> numbers = read_gltf_accessor(in_, found->second, 4, source_.file);
-        if (numbers.size() != 4 * into.positions.size()) fail(place, "its attributes differ in length");
-        for (std::size_t i = 0; i < numbers.size(); i += 4)
-            into.tangents.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]);
+        into.tangents = vectors<Vec4>(found->second);
+        if (into.tangents.size() != into.positions.size()) fail(place, "its attributes differ in length");
         if (std::all_of(into.tangents.begin(), into.tangents.end(),
                         [](const Vec4& tangent) { return std::abs(tangent.w) == 1; }))
             return;
@@ -153,8 +151,8 @@ class MeshReader {
             into = values_of(found->second);
             if (into.size() != of.positions.size()) fail(place, "its attributes differ in length");
         };
-        const auto threes = [&](int accessor) { return vec3s(accessor); };
-        const auto twos = [&](int accessor) { return vec2s(accessor); };
+        const auto threes = [&](int accessor) { return vectors<Vec3>(accessor); };
+        const auto twos = [&](int accessor) { return vectors<Vec2>(accessor); };
         read("POSITION", true, target.positions, threes);
         read("NORMAL", true, target.normals, threes);
         read("TANGENT", true, target.tangents, threes);
@@ -165,19 +163,9 @@ class MeshReader {
         return target;
     }
 
-    std::vector<Vec3> vec3s(int accessor) const {
-        const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 3, source_.file);
-        std::vector<Vec3> result;
-        for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
-            result.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
-        return result;
-    }
-    std::vector<Vec2> vec2s(int accessor) const {
-        const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 2, source_.file);
-        std::vector<Vec2> result;
-        for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
-            result.emplace_back(numbers[i], numbers[i + 1]);
-        return result;
+    template <typename Vector>
+    std::vector<Vector> vectors(int accessor) const {
+        return read_gltf_vectors<Vector>(in_, accessor, source_.file);
     }
 
     /// Lists, strips and fans as triples of vertices; strips turn every second triangle (glTF 2.0,
