@@ -41,11 +41,11 @@ std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int accesso
 /// The same as vectors: Vec2, Vec3 or Vec4.
 template <typename Vector>
 std::vector<Vector> read_gltf_vectors(const tinygltf::Model& model, int accessor, const std::string& file) {
-    constexpr int kWidth = Vector::length();
-    const std::vector<double> numbers = read_gltf_accessor(model, accessor, kWidth, file);
-    std::vector<Vector> vectors(numbers.size() / kWidth);
-    for (std::size_t i = 0; i < vectors.size(); ++i)
-        for (int c = 0; c < kWidth; ++c) vectors[i][c] = numbers[kWidth * i + static_cast<std::size_t>(c)];
+    const std::vector<double> numbers = read_gltf_accessor(model, accessor, Vector::length(), file);
+    const std::size_t width = Vector::length();
+    std::vector<Vector> vectors(numbers.size() / width);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        vectors[i / width][static_cast<int>(i % width)] = numbers[i];
     return vectors;
 }
 
